@@ -8,7 +8,7 @@
     python tools/documents.py --images                 make the pictures too, with Chromium
 
 A block stands between `<!-- begin:KIND:ARGUMENT -->` and `<!-- end:KIND:ARGUMENT -->`, each on a
-line of its own; `BLOCKS` and `PICTURES` list the kinds. `PAGES` are files that are made whole.
+line of its own. Macros of `templates` write most kinds, `BLOCKS` lists all; `PICTURES` are drawn.
 `docs/reference/README.md` says what a reference run is.
 """
 
@@ -19,58 +19,42 @@ import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
-import carry_blocks
-import found_blocks
-import latent_blocks
-import model_blocks
+import comparison
 import paper_blocks
 import run_blocks
-import state_blocks
-from blocks import IMAGES, REFERENCE, ROOT, RUNS, Picture, Wrong, copied, kind_of, load
+import studies
+from blocks import IMAGES, REFERENCE, ROOT, RUNS, Picture, Wrong, copied, figures_of, kind_of, load
+from faultpath_paper import central, facts
+from faultpath_paper.report import short, words
 from pictures import digest, made_from, make_images, name_of
+from rendering import macros
 
+from faultpath.analyses.sentences import phrases
+from faultpath.analyses.tables.markdown import block, grid
 from faultpath.run.store.signals import SIGNALS
 
 sys.path.insert(0, str(ROOT))
 from benchmarks import page as performance
 
+NAMES = {
+    "block": block,
+    "central": central,
+    "comparison": comparison,
+    "facts": facts,
+    "figures_of": figures_of,
+    "grid": grid,
+    "load": load,
+    "paper": paper_blocks,
+    "phrases": phrases,
+    "runs": run_blocks,
+    "short": short,
+    "studies": studies,
+    "words": words,
+}
+FILTERS = {"load": load, "between": comparison.between, "success": comparison.success}
+"""What templates use, beside the filters of `rendering`."""
 BLOCKS: Mapping[str, Callable[..., str]] = {
-    "table": run_blocks.table,
-    "headline": run_blocks.headline,
-    "contrast": run_blocks.contrast,
-    "terminal": run_blocks.terminal,
-    "command": run_blocks.command,
-    "picture": run_blocks.picture,
-    "times": run_blocks.times,
-    "map:command": run_blocks.command,
-    "map:said": run_blocks.sentences,
-    "wpilib:pairs": run_blocks.wpilib_pairs,
-    "scan:said": run_blocks.sentences,
-    "scan:command": run_blocks.command,
-    "scan:audits": run_blocks.scan_commands,
-    "code": run_blocks.code,
-    "template": run_blocks.template,
-    "found": found_blocks.table,
-    "audits": found_blocks.audits,
-    "counts": found_blocks.counts,
-    "models": model_blocks.table,
-    "central:answer": paper_blocks.central_answer,
-    "central:table": paper_blocks.central_table,
-    "paper:counts": paper_blocks.counts,
-    "paper:ledger": paper_blocks.ledger,
-    "paper:sizes": paper_blocks.sizes,
-    "paper:apart": paper_blocks.not_confirmed,
-    "paper:facts": paper_blocks.facts_in_short,
-    "paper:origin": paper_blocks.origin,
-    "carry:said": carry_blocks.verdicts,
-    "carry:table": carry_blocks.table,
-    "carry:cost": carry_blocks.cost,
-    "state:reading": state_blocks.reading,
-    "state:effects": state_blocks.effects,
-    "state:success": state_blocks.success,
-    "state:errors": state_blocks.errors,
-    "state:origin": state_blocks.origin,
-    **{f"latent:{part}": function for part, function in latent_blocks.KIND.items()},
+    **macros(NAMES, FILTERS),
     "performance:machine": performance.machine,
     "performance:rows": performance.all_rows,
     "performance:elsewhere": performance.elsewhere,
@@ -85,12 +69,6 @@ PICTURES: Mapping[str, Callable[..., Picture]] = {
     "paper:picture": paper_blocks.picture,
 }
 """Functions that return the picture that a block shows."""
-
-PAGES: Sequence[Callable[[], Mapping[Path, str]]] = (
-    paper_blocks.elsewhere,
-    paper_blocks.fact_page,
-)
-"""Functions that return other files that follow from numbers, by their path."""
 
 BLOCK = re.compile(
     r"^<!-- begin:(?P<name>\S+) -->\n(?P<body>.*?)^<!-- end:(?P=name) -->$",
@@ -161,9 +139,8 @@ def generated() -> Mapping[Path, str]:
     files = {path: filled(path.read_text("utf-8"), path) for path in documents()}
     drawn = (PICTURES[kind](*words) for kind, words in blocks_shown() if kind in PICTURES)
     files |= {IMAGES / picture.name: picture.svg for picture in drawn}
-    for page in PAGES:
-        files |= page()
-    return files
+    files[paper_blocks.FACTS] = BLOCKS["page:facts"]() + "\n"
+    return files | paper_blocks.elsewhere()
 
 
 def leftover() -> list[Path]:

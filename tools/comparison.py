@@ -1,12 +1,11 @@
-"""Blocks that put audits beside each other: all of them in one table, and those of one page."""
+"""Audits beside each other, over all systems: what a test at one module says of deployment."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
-from blocks import Wrong, difference, load, pipes
-from latent_blocks import FAULTS
-from latent_blocks import audits_of as audits_of_rooms
-from state_blocks import audits_of
+from blocks import Run, Wrong, load
+from rendering import difference
+from studies import CAMERA_FAULTS, camera, sensors
 
 from faultpath.analyses import effects
 from faultpath.analyses.sentences import wording
@@ -84,8 +83,13 @@ class Audit(NamedTuple):
         return min(words, key=lambda name: (WORDS.index(words[name]), -abs(effects[name].value)))
 
     @property
+    def alone(self) -> Effect:
+        """The effect at that module."""
+        return self.effects[self.module]
+
+    @property
     def word(self) -> str:
-        """The word for the test at that module."""
+        """The word for the test there."""
         return self.words[self.module]
 
 
@@ -101,30 +105,19 @@ def verdict(alone: Effect, shared: Effect, turn: str) -> str:
     return MISSED if shared.sign else ALONE if alone.sign else OPEN
 
 
-def table() -> str:
-    """Return all audits: without a fault, at the module that tells most, and shared."""
-    columns = ("system, repair", "no fault", "fault at one module", "fault shared", "isolated test")
-    return pipes(columns, map(_row, grouped()), words=(0, 4))
-
-
-def counts() -> str:
-    """Return how many audits of each system came to what."""
+def by_system() -> dict[str, list[str]]:
+    """Return the words of the audits of each system, which links to its page, and of all."""
     words: dict[str, list[str]] = {}
-    for audit in (*_of_references(), *_of_studies()):
+    for audit in every_audit():
         system = f"[{audit.title.partition(', ')[0]}]({{docs}}/{audit.page}.md)"
         words.setdefault(system, []).append(audit.word)
-    words["**all**"] = [word for those in words.values() for word in those]
-    rows = [
-        (system, str(len(those)), *(str(those.count(word) or "") for word in WORDS))
-        for system, those in words.items()
-    ]
-    return pipes(("system", "audits", *WORDS), rows)
+    return words | {"**all**": [word for those in words.values() for word in those]}
 
 
 def grouped() -> list[list[Audit]]:
     """Return the audits; those whose faults come to the same are a group, over repairs too."""
     faults: dict[tuple[object, ...], list[Audit]] = {}
-    for audit in (*_of_references(), *_of_studies()):
+    for audit in every_audit():
         signs = audit.effects[audit.module].sign, audit.effects["shared"].sign
         faults.setdefault((audit.title, audit.word, signs, audit.repair), []).append(audit)
     groups: dict[object, list[Audit]] = {}
@@ -133,12 +126,23 @@ def grouped() -> list[list[Audit]]:
     return list(groups.values())
 
 
-def _of_references() -> Iterator[Audit]:
+def every_audit() -> Iterator[Audit]:
+    """Yield the audits of reference runs, then those of studies."""
     for name, (title, page) in PAGES.items():
         record = load(name).record
         effects = {effect.condition: _effect(effect) for effect in record.effects}
         turns = {change.isolated: change.turn for change in record.changes}
         yield Audit(title, page, "", f"`{record.question.repair}`", effects, turns)
+    for rooms, title in CAMERAS.items():
+        for audit in camera(rooms, "held-out")["audits"]:
+            fault, repair = CAMERA_FAULTS[audit["fault"]], f"`{audit['repair']}`"
+            effects = audit["effects"]
+            # At a module where the fault did not act nothing was tested.
+            acted = {n: t for n, t in audit["turns"].items() if effects[n] != effects["correct"]}
+            yield _of_study(title, "latent-camera", fault, repair, effects, acted)
+    for audit in sensors().audits:
+        system, page = "Quadrotor's filter", "state-errors"
+        yield _of_study(system, page, audit.fault, audit.repair, audit.effects, audit.turns)
 
 
 def _effect(effect: effects.Effect) -> Effect:
@@ -148,40 +152,21 @@ def _effect(effect: effects.Effect) -> Effect:
     return Effect(value, *ends, 0 if effect.extreme else effect.sign)
 
 
-def _of_studies() -> Iterator[Audit]:
-    for rooms, title in CAMERAS.items():
-        for audit in audits_of_rooms(rooms):
-            effects = audit["effects"]
-            # At a module where the fault did not act nothing was tested.
-            acted = {n: t for n, t in audit["turns"].items() if effects[n] != effects["correct"]}
-            named = {"fault": FAULTS[audit["fault"]], "repair": f"`{audit['repair']}`"}
-            yield _of_study(title, "latent-camera", audit | named | {"turns": acted})
-    for audit in audits_of():
-        yield _of_study("Quadrotor's filter", "state-errors", audit)
+def _of_study(
+    title: str,
+    page: str,
+    fault: str,
+    repair: str,
+    effects: Mapping[str, Any],
+    turns: Mapping[str, str],
+) -> Audit:
+    shown = {name: Effect(*effect) for name, effect in effects.items()}
+    return Audit(title, page, fault, repair, shown, turns)
 
 
-def _of_study(title: str, page: str, audit: Mapping[str, Any]) -> Audit:
-    effects = {name: Effect(*effect) for name, effect in audit["effects"].items()}
-    return Audit(title, page, audit["fault"], audit["repair"], effects, audit["turns"])
-
-
-def _row(audits: Sequence[Audit]) -> tuple[str, ...]:
-    first, word = audits[0], audits[0].word
-    page = f"[{first.title}]({{docs}}/{first.page}.md)"
-    faults, repairs = (audit.fault for audit in audits), (audit.repair for audit in audits)
-    modules = dict.fromkeys(audit.module for audit in audits)
-    alone = [audit.effects[audit.module] for audit in audits]
-    return (
-        ", ".join(filter(None, dict.fromkeys((page, *faults, *repairs)))),
-        _shown([audit.effects["correct"] for audit in audits]).partition(" [")[0],
-        f"{' or '.join(modules)} {_shown(alone)}",
-        _shown([audit.effects["shared"] for audit in audits]),
-        f"**{word}**" if word == REVERSAL else word,
-    )
-
-
-def _shown(effects: Sequence[Effect]) -> str:
+def between(effects: Iterable[Effect]) -> str:
     """Return an effect with its interval, or the least and the greatest of several."""
+    effects = list(effects)
     least, greatest = min(effects), max(effects)
     if len({effect.value for effect in effects}) == 1:
         return difference(*least[:3], bold=bool(least.sign))
@@ -190,17 +175,12 @@ def _shown(effects: Sequence[Effect]) -> str:
     return f"**{ends}**" if bold else ends
 
 
-def audits(page: str) -> str:
-    """Return success of baseline and repair, and their difference, for each audit of a page."""
-    runs = [load(name) for name, (_, place) in PAGES.items() if place == page]
-    titles = [effect.title for effect in runs[0].record.conditions]
-    rows = []
-    for run in runs:
-        question, cells = run.record.question, map(_success, run.record.effects)
-        rows.append((f"`{question.repair}`, `{question.fault}`", *cells))
-    return f"{pipes(('repair, fault', *titles), rows)}\n\n{runs[0].flown}"
+def runs_of(page: str) -> list[Run]:
+    """Return the reference runs that a page is about."""
+    return [load(name) for name, (_, place) in PAGES.items() if place == page]
 
 
-def _success(effect: effects.Effect) -> str:
+def success(effect: effects.Effect) -> str:
+    """Return success of baseline and repair, and their difference."""
     rates = (wording.plain(rate, 1) for rate in effect.rates)
-    return f"{' → '.join(rates)}, {_shown([_effect(effect)])}"
+    return f"{' → '.join(rates)}, {between([_effect(effect)])}"
