@@ -1,6 +1,6 @@
 """Audits beside each other, over all systems: what a test at one module says of deployment."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from blocks import Run, Wrong, load
@@ -46,6 +46,15 @@ REVERSAL, MISSED, ALONE = "reversal", "missed by the isolated test", "only in th
 SIZE, SAME, OPEN = "another size", "same", "inconclusive"
 WORDS = (REVERSAL, MISSED, ALONE, SIZE, SAME, OPEN)
 """Words for what an isolated test says of deployment; of several modules the first is shown."""
+ANSWERS = {
+    REVERSAL: "no: the better version is the worse one",
+    MISSED: "no: there is a difference that it does not show",
+    ALONE: "no: the difference that it shows is gone",
+    SIZE: "which version is better, not by how much",
+    SAME: "yes, as far as is seen",
+    OPEN: "not decided",
+}
+"""The same as an answer to the question whether the test foretells the shared fault's effect."""
 
 
 class Effect(NamedTuple):
@@ -106,12 +115,19 @@ def verdict(alone: Effect, shared: Effect, turn: str) -> str:
 
 
 def by_system() -> dict[str, list[str]]:
-    """Return the words of the audits of each system, which links to its page, and of all."""
+    """Return the words of the audits of each system, which links to its page."""
     words: dict[str, list[str]] = {}
     for audit in every_audit():
-        system = f"[{audit.title.partition(', ')[0]}]({{docs}}/{audit.page}.md)"
-        words.setdefault(system, []).append(audit.word)
-    return words | {"**all**": [word for those in words.values() for word in those]}
+        system = audit.title.partition(", ")[0].partition(" on a ")[0]
+        words.setdefault(f"[{system}]({{docs}}/{audit.page}.md)", []).append(audit.word)
+    return words
+
+
+def answer(words: Sequence[str]) -> str:
+    """Return what the audits of a system say of its tests of one module, each with its count."""
+    counts = {text: words.count(word) for word, text in ANSWERS.items() if word in words}
+    several = len(words) > 1
+    return "; ".join(f"{text} ({n})" if several else text for text, n in counts.items())
 
 
 def grouped() -> list[list[Audit]]:

@@ -21,7 +21,7 @@ from faultpath_paper.central import (
 from faultpath_paper.report.page import sweep_plot
 
 from faultpath.analyses.model import CORRECT, SHARED
-from faultpath.analyses.sentences import wording
+from faultpath.analyses.sentences import shares, wording
 from faultpath.report.svg import template
 from faultpath.run.store.folder import read_outcomes
 
@@ -87,12 +87,16 @@ def _case(run: Run) -> Case:
         PrintedEffect.of(wording.with_interval(effect), effect.significant) for effect in pair
     )
     (moved,) = (change for change in record.changes if change.isolated == _MODULE)
+    (frequency,) = (share for share in record.break_even if share.condition == SHARED)
     by_seed = zip(*(effect.per_seed for effect in pair), strict=True)
     return Case(
         place=f"{record.scenes} scenes of {question.library}, {wording.seeds(question.seeds)}",
         isolated=isolated,
         shared=shared,
         change=PrintedEffect.of(wording.with_interval(moved), moved.significant),
+        ahead=shares.ahead(question, frequency)
+        .replace(question.repair, "the retrained one")
+        .replace(question.baseline, "the original"),
         reversal=(_MODULE, "reversal") in ((c.isolated, c.turn) for c in record.changes),
         reversing=sum(one > 0 > two for one, two in by_seed),
         trainings=len(question.seeds),

@@ -7,7 +7,6 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from faultpath.analyses.effects import Difference
 from faultpath.analyses.sentences import wording
 from faultpath.analyses.tables import MISSING
 from faultpath.analyses.tables.escapes import markdown as escape
@@ -42,11 +41,6 @@ def effect(numbers: Sequence[float]) -> str:
     return f"**{text}**" if sign else text
 
 
-def contrast(of: Difference) -> str:
-    """Return a difference of an audit, its value bold where it is significant."""
-    return difference(of.value, *(of.interval or ()), bold=of.significant)
-
-
 def mean(of: Any) -> str:
     """Return a mean over cells, bold where it is significant; a dash where there is none."""
     if of is None:
@@ -68,9 +62,7 @@ def fence(body: str, info: str = "text", *more: str) -> str:
 
 FILTERS: Mapping[str, Callable[..., object]] = {
     "at": lambda key, mapping: mapping[key],
-    "contrast": contrast,
     "counted": wording.counted,
-    "counted_in": lambda word, words: words.count(word) or "",
     "effect": effect,
     "escape": escape,
     "fence": fence,

@@ -13,7 +13,6 @@ from faultpath_quadrotor.checkpoint import shipped_folder
 from faultpath_quadrotor.training.catalogue import ALL, ModelEntry
 from rich.console import Console
 
-from faultpath.analyses.effects import Difference
 from faultpath.analyses.record import DecisionRecord
 from faultpath.analyses.tables.markdown import grid
 from faultpath.report.map_pictures import correlation_picture, map_picture
@@ -42,16 +41,6 @@ MEASURES = {
 def quantities(record: DecisionRecord) -> str:
     """Return success of both variants and their difference, one condition a column."""
     return grid(by_quantity(record, ("baseline", "repair", *DIFFERENCE, "holm", "break-even")))
-
-
-def largest_change(name: str) -> tuple[Difference, Difference, Difference]:
-    """Return the largest change from one module to the shared fault, and the effects at both."""
-    record = load(name).record
-    effects = {effect.condition: effect for effect in record.effects}
-    moved = max(record.changes, key=lambda change: abs(change.value))
-    if not moved.significant:
-        raise Wrong(f"{name} has no significant change: the block cannot be filled")
-    return moved, effects[moved.isolated], effects["shared"]
 
 
 def printed(name: str) -> str:
