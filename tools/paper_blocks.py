@@ -85,7 +85,7 @@ def _cases() -> tuple[Case, ...]:
 def _former() -> str:
     """Return a sentence where the shipped run was flown on another platform than the one here."""
     weights = ROOT / "quadrotor" / "src" / "faultpath_quadrotor" / WEIGHTS
-    if load().provenance.data[WEIGHTS] == hashlib.sha256(weights.read_bytes()).hexdigest():
+    if load().provenance.code.data[WEIGHTS] == hashlib.sha256(weights.read_bytes()).hexdigest():
         return ""
     return "**On a platform before the present one.** "
 
@@ -109,14 +109,14 @@ def _case(run: Run) -> Case:
     (moved,) = (change for change in record.changes if change.isolated == _MODULE)
     by_seed = zip(*(effect.per_seed for effect in pair), strict=True)
     return Case(
-        place=f"{record.scenes} scenes of {question.library}, {wording.seeds(question.seeds)}",
+        place=f"{record.scenes} scenes of {record.facts.library}, {wording.seeds(question.seeds)}",
         isolated=isolated,
         shared=shared,
         change=PrintedEffect.of(wording.with_interval(moved), moved.significant),
         reversal=(_MODULE, "reversal") in ((c.isolated, c.turn) for c in record.changes),
         reversing=sum(one > 0 > two for one, two in by_seed),
         trainings=len(question.seeds),
-        weights=run.provenance.data[WEIGHTS],
+        weights=run.provenance.code.data[WEIGHTS],
     )
 
 
@@ -179,8 +179,9 @@ def origin() -> str:
     """Return where the run comes from, and how much of it was flown again."""
     run, place = load(), PLACE.relative_to(REFERENCE)
     again = "" if _former() else _flown_again()
+    workers = run.provenance.machine.workers
     return (
-        f"Finished on {run.provenance.finished[:10]}, with {run.provenance.workers} workers on "
+        f"Finished on {run.provenance.finished[:10]}, with {workers} workers on "
         f"{run.processor}, and concluded anew by the code that is "
         f"here, which a test repeats. {run.flown} {again}Everything is in "
         f"[`docs/reference/{place}`]({{reference}}/{place}): the report, the ledger and all tables."

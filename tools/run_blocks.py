@@ -39,17 +39,18 @@ PARTS: dict[str, tuple[str, str]] = {
 def table(name: str) -> str:
     """Return success of both variants and their difference, one condition a column."""
     run = load(name)
-    record, question = run.record, run.record.question
+    record, question, facts = run.record, run.record.question, run.record.facts
     table = by_quantity(record, ("baseline", "repair", *DIFFERENCE, "holm", "break-even"))
-    tests = f" Tests: {question.tests}." if question.tests else ""
+    tests = f" Tests: {facts.tests}." if facts.tests else ""
     return "\n\n".join(
         [
             grid(table),
-            f"{question.n_scenes} scenes of `{question.library}`, {wording.seeds(question.seeds)}, "
+            f"{facts.n_scenes} scenes of `{facts.library}`, {wording.seeds(facts.seeds)}, "
             f"fault `{question.fault}`. Bold: significant after Holm's correction for "
-            f"{record.hypotheses} contrasts. [What each row says]({{docs}}/reading-a-report.md). "
+            f"{record.testing.hypotheses} contrasts. "
+            "[What each row says]({docs}/reading-a-report.md). "
             f"Intervals are for "
-            f"{phrases.estimand(question)}. Void pairs: "
+            f"{phrases.estimand(question, facts)}. Void pairs: "
             f"{sum(effect.void for effect in record.effects)}.{tests} {run.flown}",
         ]
     )
@@ -114,12 +115,12 @@ def times(*names: str) -> str:
     runs = [load(name) for name in names]
     lines = tuple(
         line(
-            str(run.record.question.n_scenes),
+            str(run.record.facts.n_scenes),
             str(len(run.record.question.seeds)),
             str(trials(run)),
             duration(run),
             run.processor,
-            str(run.provenance.workers),
+            str(run.provenance.machine.workers),
         )
         for run in runs
     )
@@ -134,7 +135,7 @@ def trials(run: Run) -> int:
     conditions, question = run.record.conditions, run.record.question
     treatments = {("repair", condition.readers) for condition in conditions}
     treatments |= {("baseline", condition.baseline_readers) for condition in conditions}
-    return len(treatments) * question.n_scenes * len(question.seeds)
+    return len(treatments) * run.record.facts.n_scenes * len(question.seeds)
 
 
 def duration(run: Run) -> str:

@@ -42,7 +42,7 @@ print("| :-- | --: | --: | --: | --: | :-- |")
 signs = []
 for folder, flown in ((HERE, before), (THERE, now)):
     record = MapRecord.model_validate(read(folder, "map.json"))
-    processor = read(folder, "provenance.json")["processor"].replace("(R)", "")
+    processor = read(folder, "provenance.json")["machine"]["processor"].replace("(R)", "")
     signs.append({point.errors: point.sign for point in record.points})
     counts = [str(list(signs[-1].values()).count(sign)) for sign in (-1, 1, 0)]
     print("|", " | ".join([processor, f"{len(flown):,}", *counts, record.headline]), "|")
