@@ -110,15 +110,15 @@ class Run:
     @property
     def flown(self) -> str:
         """By which version it was run, and how many of its trials the code that is here repeats."""
-        run, repeats = self.provenance, self.repeats
-        commit = f" (`{run.commit[:12]}`)" if run.commit else ""
-        text = f"Run by faultpath {run.faultpath_version}{commit}"
+        code, repeats = self.provenance.code, self.repeats
+        commit = f" (`{code.commit[:12]}`)" if code.commit else ""
+        text = f"Run by faultpath {code.faultpath_version}{commit}"
         return f"{text}; {repeats}." if repeats else f"{text}."
 
     @property
     def processor(self) -> str:
         """On which processor it was flown."""
-        return self.provenance.processor.replace("(R)", "")
+        return self.provenance.machine.processor.replace("(R)", "")
 
 
 def kind_of(folder: Path) -> str:

@@ -188,7 +188,7 @@ def take(argument: str) -> None:
     signals = (SIGNALS,) if (source / SIGNALS).is_file() else ()
     copied((*RUNS[kind_of(source)][1], *signals), source, REFERENCE / name)
     load.cache_clear()
-    if load(name).provenance.dirty:
+    if load(name).provenance.code.dirty:
         print(f"{name} was made with uncommitted changes, and the documents will say so.")
 
 

@@ -65,7 +65,7 @@ def cases() -> tuple[Case, ...]:
 def former() -> str:
     """Return a sentence where the shipped run was flown on another platform than the one here."""
     weights = ROOT / "quadrotor" / "src" / "faultpath_quadrotor" / WEIGHTS
-    if load().provenance.data[WEIGHTS] == hashlib.sha256(weights.read_bytes()).hexdigest():
+    if load().provenance.code.data[WEIGHTS] == hashlib.sha256(weights.read_bytes()).hexdigest():
         return ""
     return "**On a platform before the present one.** "
 
@@ -90,7 +90,7 @@ def _case(run: Run) -> Case:
     (frequency,) = (share for share in record.break_even if share.condition == SHARED)
     by_seed = zip(*(effect.per_seed for effect in pair), strict=True)
     return Case(
-        place=f"{record.scenes} scenes of {question.library}, {wording.seeds(question.seeds)}",
+        place=f"{record.scenes} scenes of {record.facts.library}, {wording.seeds(question.seeds)}",
         isolated=isolated,
         shared=shared,
         change=PrintedEffect.of(wording.with_interval(moved), moved.significant),
@@ -100,7 +100,7 @@ def _case(run: Run) -> Case:
         reversal=(_MODULE, "reversal") in ((c.isolated, c.turn) for c in record.changes),
         reversing=sum(one > 0 > two for one, two in by_seed),
         trainings=len(question.seeds),
-        weights=run.provenance.data[WEIGHTS],
+        weights=run.provenance.code.data[WEIGHTS],
     )
 
 

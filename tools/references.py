@@ -161,7 +161,7 @@ def fly(run: Run, commit: str) -> None:
 
 def elsewhere(run: Run) -> str:
     """Return a line for a run of another kind of processor, which rounds differently."""
-    before, here = run.provenance.processor, processor()
+    before, here = run.provenance.machine.processor, processor()
     if before == here:
         return ""
     return f"It was flown on {before}, and here is {here}: single trials may end differently.\n"
@@ -169,7 +169,7 @@ def elsewhere(run: Run) -> str:
 
 def environment(run: Run) -> str:
     """Return the virtual environment, as make has it, in which a run's system can be built."""
-    version = ".".join(run.provenance.python.split(".")[:2])
+    version = ".".join(run.provenance.machine.python.split(".")[:2])
     if version != f"{sys.version_info.major}.{sys.version_info.minor}":
         return f".venv-{version}"
     example = Path(run.provenance.command[2]).name

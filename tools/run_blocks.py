@@ -67,7 +67,7 @@ def trials(run: Run) -> int:
     conditions, question = run.record.conditions, run.record.question
     treatments = {("repair", condition.readers) for condition in conditions}
     treatments |= {("baseline", condition.baseline_readers) for condition in conditions}
-    return len(treatments) * question.n_scenes * len(question.seeds)
+    return len(treatments) * run.record.facts.n_scenes * len(question.seeds)
 
 
 def duration(run: Run) -> str:

@@ -2,12 +2,15 @@
 
 from collections.abc import Mapping, Sequence
 from math import comb
+from typing import Any
 
 from faultpath.analyses.decide import decide
+from faultpath.analyses.facts import ComparisonFacts, SceneOrder
 from faultpath.analyses.model import CORRECT, SHARED, Condition
-from faultpath.analyses.question import Question
 from faultpath.analyses.record import DecisionRecord
+from faultpath.faults import FaultText
 from faultpath.run import Trial, Trials
+from faultpath.run.question import AuditQuestion
 from faultpath.system import Outcome, Status
 
 BASELINE, REPAIR = "old", "new"
@@ -19,18 +22,24 @@ Counts = tuple[int, int, int]
 """Scenes that both win, that only the repair wins, and that only the baseline wins."""
 
 
-def question(n_scenes: int = SCENES, seeds: Sequence[int] = (0,)) -> Question:
-    return Question(
+def question(**asked: Any) -> AuditQuestion:
+    fault = FaultText.read("gain:scale=0.6")
+    return AuditQuestion(baseline=BASELINE, repair=REPAIR, fault=fault, **asked)
+
+
+def facts(n_scenes: int = SCENES, seeds: Sequence[int] = (0,), **more: Any) -> ComparisonFacts:
+    return ComparisonFacts(
         system="toy",
-        options={},
-        baseline=BASELINE,
-        repair=REPAIR,
-        fault="gain:scale=0.6",
         library="made up",
         library_hash="hash-1",
         n_scenes=n_scenes,
         seeds=tuple(seeds),
+        **more,
     )
+
+
+def sequential(per_analysis: int = 5) -> SceneOrder:
+    return SceneOrder(scenes=(), seed=0, per_analysis=per_analysis, trials=8)
 
 
 def conditions(*names: str) -> tuple[Condition, ...]:
@@ -105,11 +114,11 @@ def table(cells: Mapping[str, Counts], n: int = SCENES, slower_s: float = 0.0) -
 
 
 def record(cells: Mapping[str, Counts], n: int = SCENES, **changes: float) -> DecisionRecord:
-    return decide(question(n), conditions(*cells), table(cells, n, **changes))
+    return decide(question(), facts(n), conditions(*cells), table(cells, n, **changes))
 
 
 def seeded(
-    cells: Mapping[str, Sequence[Counts]], n: int = SCENES, **asked: object
+    cells: Mapping[str, Sequence[Counts]], n: int = SCENES, trained: bool = False, **asked: object
 ) -> DecisionRecord:
     """Return the record of several seeds, counts seed by seed; `asked` changes the question."""
     out = [
@@ -120,8 +129,8 @@ def seeded(
         for row in rows(variant, condition, statuses, seed=seed)
     ]
     seeds = range(len(next(iter(cells.values()))))
-    about = question(n, tuple(seeds)).model_copy(update=asked)
-    return decide(about, conditions(*cells), Trials.of(out))
+    about = facts(n, tuple(seeds), trained=trained)
+    return decide(question(**asked), about, conditions(*cells), Trials.of(out))
 
 
 def three(correct: Counts, isolated: Counts, shared: Counts) -> DecisionRecord:

@@ -9,7 +9,6 @@ from faultpath.analyses.map.lattice import UNITS
 from faultpath.analyses.map.record import MapRecord
 from faultpath.analyses.map.study import plan_map
 from faultpath.run import Deliveries, SystemSpec, load_system
-from faultpath.run.question import MapQuestion
 from faultpath.run.store.folder import read_outcomes
 from faultpath.system import library_of
 
@@ -23,22 +22,16 @@ def test_a_reference_map_follows_from_its_outcomes(
 ) -> None:
     monkeypatch.chdir(ROOT)
     record = MapRecord.model_validate_json((folder / "map.json").read_bytes())
-    asked = record.question
-    spec = SystemSpec(name=asked.system, options=asked.options)
+    question, facts = record.question, record.facts
+    spec = SystemSpec(name=facts.system, options=question.options)
     system = load_system(spec)
-    same = ("baseline", "repair", "fault", "against", "up_to", "points", "correlation", "seeds")
-    question = MapQuestion(
-        **{name: getattr(asked, name) for name in same},
-        mean=asked.means,
-        spread=asked.spreads,
-        scenes=asked.n_scenes,
-    )
-    plan = plan_map(system, spec, question, library_of(system, asked.library))
+    plan = plan_map(system, spec, question, library_of(system, facts.library))
     # Under other versions of packages an environment has other scenes; the trials are of these.
-    assert plan.question.model_copy(update={"library_hash": asked.library_hash}) == asked
-    plan = replace(plan, question=asked)
+    assert plan.question == question
+    assert plan.facts.model_copy(update={"library_hash": facts.library_hash}) == facts
+    plan = replace(plan, facts=facts)
     points = [
-        (round(x / asked.up_to * UNITS), round(y / asked.up_to * UNITS))
+        (round(x / facts.up_to * UNITS), round(y / facts.up_to * UNITS))
         for x, y in (point.errors for point in record.points)
     ]
     table = read_outcomes(folder / "outcomes.parquet")

@@ -3,7 +3,17 @@
 import re
 
 import pytest
-from outcome_tables import BASELINE, REPAIR, conditions, question, rows, seeded, three, variants
+from outcome_tables import (
+    BASELINE,
+    REPAIR,
+    conditions,
+    facts,
+    question,
+    rows,
+    seeded,
+    three,
+    variants,
+)
 
 from faultpath.analyses.decide import decide
 from faultpath.analyses.model import CORRECT, SHARED
@@ -98,7 +108,7 @@ def test_a_fault_that_never_acted_was_not_tested():
         for condition in (CORRECT, "observer", SHARED):
             for variant, statuses in variants(GAIN).items():
                 out += rows(variant, condition, statuses, altered=altered.get(condition))
-        return decide(question(), conditions(CORRECT, "observer", SHARED), Trials.of(out))
+        return decide(question(), facts(), conditions(CORRECT, "observer", SHARED), Trials.of(out))
 
     never = made({"observer": 0, SHARED: 0})
     assert never.headline == "The fault never changed a reading: no effect of it was tested."
@@ -117,9 +127,10 @@ def test_results_of_trained_models_are_said_to_be_theirs():
     cells = {CORRECT: [LEVEL] * 1, "observer": [GAIN], SHARED: [LOSS]}
     plain, trained = (seeded(cells, trained=flag) for flag in (False, True))
     assert "model" not in " ".join((plain.headline, *plain.sentences))
-    assert "model" not in phrases.estimand(plain.question)
+    assert "model" not in phrases.estimand(plain.question, plain.facts)
     assert trained.headline == plain.headline
-    assert phrases.estimand(trained.question) == "new scenes like these, for these trained models"
+    estimand = phrases.estimand(trained.question, trained.facts)
+    assert estimand == "new scenes like these, for these trained models"
     assert "models trained anew may differ" in " ".join(trained.sentences)
 
 
@@ -127,7 +138,7 @@ def test_what_is_said_of_newly_trained_models_names_its_condition_and_a_sign_tes
     by_seed = [(40, 30, 2), (42, 28, 3), (38, 31, 1), (39, 30, 2), (41, 29, 0)]
     cells = {CORRECT: by_seed, "observer": by_seed}
     made = seeded(cells, trained=True, generalise="models")
-    assert phrases.estimand(made.question).endswith("models newly trained with other seeds")
+    assert phrases.estimand(made.question, made.facts).endswith("newly trained with other seeds")
     assert "these trained models" not in made.headline
     whole = " ".join(made.sentences)
     assert "5 trainings stand for new ones as far as trainings spread evenly" in whole
@@ -163,7 +174,7 @@ def test_a_training_that_failed_throughout_under_one_condition_is_left_out_there
             seed=seed,
         )
     ]
-    about = question(100, range(6)).model_copy(update={"trained": True, "generalise": "models"})
-    made = decide(about, conditions(*cells), Trials.of(trials))
+    about = facts(100, range(6), trained=True)
+    made = decide(question(generalise="models"), about, conditions(*cells), Trials.of(trials))
     assert [len(effect.per_seed) for effect in made.effects] == [6, 6, 5]
     assert len(made.changes[0].per_seed) == 5

@@ -54,7 +54,7 @@ def _outcomes(run: faultpath.Run) -> list[tuple]:
 
 def test_a_run_holds_what_was_decided_and_from_what(run):
     assert "blind" in run.record.headline
-    assert run.record.question.n_scenes == 12
+    assert run.record.facts.n_scenes == 12
     assert run.failed == 0
     assert isinstance(run.table(), pa.Table)
     assert run.table().num_rows == 12 * 2 * 4
@@ -104,8 +104,8 @@ def test_whatever_names_a_system_runs_the_same(way, workers, name, run, toy):
     other = faultpath.audit(ways[way], folder="other", **ASKED | {"workers": workers})
     assert _outcomes(other) == _outcomes(run)
     assert other.record.effects == run.record.effects
-    assert other.record.question.system == name
-    assert other.provenance.workers == (workers or 0)
+    assert other.record.facts.system == name
+    assert other.provenance.machine.workers == (workers or 0)
 
 
 def test_an_object_that_was_changed_is_not_taken_for_what_was_loaded():
@@ -171,7 +171,7 @@ asked = {ASKED!r}
 asked |= {{"progress": True, "scenes": 4}}
 named = faultpath.audit({TOY!r}, **asked | {{"workers": 2}})
 mine = faultpath.audit(Mine(), **asked | {{"workers": None}})
-print(named.record.effects == mine.record.effects, mine.provenance.system_commit)
+print(named.record.effects == mine.record.effects, mine.provenance.code.system_commit)
 """
 
 
@@ -206,10 +206,10 @@ def test_a_sequential_audit_stops_and_says_so(early):
     assert record.stopped is not None
     assert record.stopped.reached
     assert record.stopped.scenes < 60
-    assert record.stopped.scenes % record.question.stop.look == 0
+    assert record.stopped.scenes % record.facts.order.per_analysis == 0
     assert early.table().num_rows == record.stopped.scenes * 2 * 4
     flown = set(early.table()["scene"].to_pylist())
-    assert flown == set(record.question.stop.order[: record.stopped.scenes])
+    assert flown == set(record.facts.order.scenes[: record.stopped.scenes])
     assert record.effects[-1].sign == -1  # under the shared fault, for the baseline
     assert "ahead" in record.headline
     assert f"{record.stopped.scenes} scenes of at most 60" in " ".join(record.sentences)

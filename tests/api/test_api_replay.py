@@ -95,8 +95,8 @@ def test_only_scenes_and_conditions_of_a_run_that_can_be_built_are_run_again(fol
         chosen_scenes(source, ("cart/09",), ())
     with pytest.raises(UserError, match=r"unknown condition"):
         chosen_scenes(source, (), ("both",))
-    question = source.record.question.model_copy(update={"system": "Toy object"})
-    lost = replace(source, record=source.record.model_copy(update={"question": question}))
+    facts = source.record.facts.model_copy(update={"system": "Toy object"})
+    lost = replace(source, record=source.record.model_copy(update={"facts": facts}))
     with pytest.raises(UserError, match="is of a Toy object, which only its own process had"):
         replay(lost, (SCENE,), trust=True)
 
@@ -110,15 +110,17 @@ def test_the_verb_says_whether_a_run_repeats(folder, capsys) -> None:
     ("update", "words"),
     [
         ({}, ()),
-        ({"processor": "Abacus"}, ("the processor (Abacus, here ",)),
-        ({"backend": "stones"}, ("what computes (stones, here )",)),
-        ({"python": "2.7.18"}, ("Python (2.7.18, here ",)),
-        ({"sources": {}}, ("files (",)),
+        ({"machine": {"processor": "Abacus"}}, ("the processor (Abacus, here ",)),
+        ({"machine": {"backend": "stones"}}, ("what computes (stones, here )",)),
+        ({"machine": {"python": "2.7.18"}}, ("Python (2.7.18, here ",)),
+        ({"code": {"sources": {}}}, ("files (",)),
     ],
 )
 def test_a_replay_says_what_has_changed_since_the_run(folder, update, words) -> None:
     source = read_run(folder)
-    run = source.provenance.model_copy(update=update)
+    run = source.provenance
+    parts = {name: getattr(run, name).model_copy(update=part) for name, part in update.items()}
+    run = run.model_copy(update=parts)
     changed = replay(replace(source, provenance=run), (SCENE,), ("observer",), trust=True).changed
     assert len(changed) == len(words)
     assert all(map(str.startswith, changed, words))

@@ -85,11 +85,11 @@ def test_every_cell_has_a_row_and_treatments_that_are_the_same_run_once():
 
 def test_the_question_says_what_was_asked():
     audit = planned("plain", "observed", "mass:scale=2,onset=3", scenes=2, seeds=(4,))
-    question = audit.question
+    question, facts = audit.question, audit.facts
     assert (question.baseline, question.repair) == ("plain", "observed")
-    assert question.fault == "mass:scale=2,onset=3"
-    assert (question.library, question.library_hash) == ("five", "five-1")
-    assert (question.n_scenes, question.seeds) == (2, (4,))
+    assert str(question.fault) == "mass:scale=2,onset=3"
+    assert (facts.library, facts.library_hash) == ("five", "five-1")
+    assert (facts.n_scenes, question.seeds) == (2, (4,))
     assert audit.study.scenes == ("s0", "s1")
     faults = [fault for row in audit.study.rows for fault in row.treatment.faults]
     assert faults
@@ -129,10 +129,11 @@ def test_a_module_may_not_be_called_like_a_condition(monkeypatch):
 
 
 def test_the_question_names_its_primary_contrast_and_what_it_generalises_to():
-    assert planned("plain", "observed", "mass:scale=2").question.primary == "shared"
-    assert planned("deaf", "plain", "mass:scale=2").question.primary == "planner"
-    named = planned("plain", "observed", "mass:scale=2", primary="observer").question
-    assert (named.primary, named.generalise, named.trained) == ("observer", "scenes", False)
+    assert planned("plain", "observed", "mass:scale=2").facts.primary == "shared"
+    assert planned("deaf", "plain", "mass:scale=2").facts.primary == "planner"
+    named = planned("plain", "observed", "mass:scale=2", primary="observer")
+    assert (named.facts.primary, named.facts.trained) == ("observer", False)
+    assert named.question.generalise == "scenes"
     with pytest.raises(
         UserError, match=r"no condition 'pilot'.*correct, observer, planner, shared"
     ):
@@ -144,15 +145,15 @@ def test_newly_trained_models_need_trained_models_and_several_seeds(monkeypatch)
     with pytest.raises(UserError, match="no trained models to generalise to"):
         planned("plain", "observed", "mass:scale=2", **asked)
     monkeypatch.setattr(Paper, "trained", True)
-    question = planned("plain", "observed", "mass:scale=2", **asked).question
-    assert (question.generalise, question.trained) == ("models", True)
+    audit = planned("plain", "observed", "mass:scale=2", **asked)
+    assert (audit.question.generalise, audit.facts.trained) == ("models", True)
     with pytest.raises(UserError, match=r"4 seeds cannot show how .*--seeds 0,1,2,3,4"):
         planned("plain", "observed", "mass:scale=2", generalise="models", seeds=(0, 1, 2, 3))
 
 
 def test_the_question_knows_what_the_system_calls_its_ends(monkeypatch):
     monkeypatch.setattr(Paper, "ends", {Status.TIMEOUT: "missed"})
-    assert planned("plain", "observed", "mass:scale=2").question.ends == {"timeout": "missed"}
+    assert planned("plain", "observed", "mass:scale=2").facts.ends == {"timeout": "missed"}
 
 
 def test_audits_and_maps_run_in_scenes_that_nothing_was_chosen_by() -> None:

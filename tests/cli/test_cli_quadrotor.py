@@ -29,9 +29,9 @@ def test_a_library_of_ones_own_is_flown_and_reported(monkeypatch):
     )
     assert (ended.status, ended.err) == (0, "")
     record = open_run("run").record
-    question = record.question
-    assert (question.n_scenes, question.options) == (2, {"wind": "L1"})
-    assert question.library_hash == json.loads(Path("mine.json").read_text())["content_hash"]
+    facts = record.facts
+    assert (facts.n_scenes, record.question.options) == (2, {"wind": "L1"})
+    assert facts.library_hash == json.loads(Path("mine.json").read_text())["content_hash"]
     names = [condition.name for condition in record.conditions]
     assert names == ["correct", "predictor", "reconstruction", "shared"]
 
@@ -43,5 +43,5 @@ def test_a_library_of_ones_own_is_flown_and_reported(monkeypatch):
 
     backend = native.describe()
     assert f"Computing with {backend}." in ended.out
-    assert json.loads(Path("run/provenance.json").read_text())["backend"] == backend
+    assert json.loads(Path("run/provenance.json").read_text())["machine"]["backend"] == backend
     assert backend.encode() in page

@@ -29,7 +29,7 @@ def test_the_system_that_a_record_names_is_not_imported(run: Path, tmp_path: Pat
     evil.write_text(f"open({str(harm)!r}, 'w')\n")
     shutil.copy(evil, run / "evil.py")
     for name in ("evil:create", "run/evil.py:create"):
-        edit(run / "record.json", lambda content, n=name: content["question"].update(system=n))
+        edit(run / "record.json", lambda content, n=name: content["facts"].update(system=n))
         sign(run)
         ended = faultpath("report", run)
         assert (ended.status, ended.err) == (0, "")
@@ -129,7 +129,7 @@ FORGED: dict[str, tuple[str, Change]] = {
     "no secondary outcomes": ("contradict", record(lambda c: c.update(secondary=[]))),
     "no cells": ("versions", record(lambda c: c.update(cells=[]))),
     "another count": ("count", record(lambda c: c["cells"][0].update(success=77))),
-    "another library": ("libraries", record(lambda c: c["question"].update(library_hash="x"))),
+    "another library": ("libraries", record(lambda c: c["facts"].update(library_hash="x"))),
     "another metric": ("'speed'", record(lambda c: c["question"].update(metric="speed"))),
     "a tap that is not there": (
         "injection points",

@@ -4,6 +4,7 @@ import shutil
 import sys
 from contextlib import nullcontext
 from pathlib import Path
+from typing import Any
 
 import pytest
 from cli_runs import ROOT, audit, edit, faultpath
@@ -45,7 +46,12 @@ def _here(run: Path, tmp_path: Path) -> None:
 
 def renamed(**names: object) -> None:
     """Let the record name another system, and fit its digest as a stranger would."""
-    edit(Path("run/record.json"), lambda record: record["question"].update(names))
+
+    def change(record: dict[str, Any]) -> None:
+        for name, value in names.items():
+            record["facts" if name == "system" else "question"][name] = value
+
+    edit(Path("run/record.json"), change)
     sign(Path("run"))
 
 

@@ -10,15 +10,15 @@ from typing import Any
 import pytest
 
 import faultpath
-from faultpath.analyses.question import Question
+from faultpath.analyses.facts import ComparisonFacts
 from faultpath.faults import Fault, FaultText, Intervention, resolve
-from faultpath.run.question import AuditQuestion
+from faultpath.run.question import AuditCall, AuditQuestion
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = str(ROOT / "src" / "faultpath")
 SCENES = 23
 """So many that an effect is a number which nothing else is."""
-QUESTIONS = (AuditQuestion, Question)
+QUESTIONS = (AuditCall, AuditQuestion, ComparisonFacts)
 """They keep the text and the faults for whoever reads the run."""
 READ, RESOLVED = FaultText.read.__func__.__code__, resolve.__code__  # pyright: ignore[reportFunctionMemberAccess]
 
@@ -147,5 +147,5 @@ def test_an_effect_passes_eight_classes_and_a_question_four(tmp_path: Path) -> N
         return any(is_question(part) for part in (holder, *fields(holder)))
 
     questions = profiled(question, tmp_path / "question", *rooms, **asked)
-    assert {AuditQuestion, Question} <= questions.classes
+    assert {AuditCall, AuditQuestion} <= questions.classes
     assert len(questions.classes) <= 4, questions.classes

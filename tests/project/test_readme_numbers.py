@@ -51,7 +51,9 @@ def test_no_block_or_picture_is_stale(run: Callable[..., CompletedProcess[str]])
 def test_a_reference_record_follows_from_its_outcomes(folder: Path) -> None:
     record = record_of(folder.name)
     table = read_outcomes(folder / "outcomes.parquet")
-    again = decide(record.question, record.conditions, table, findings=record.findings)
+    again = decide(
+        record.question, record.facts, record.conditions, table, findings=record.findings
+    )
     assert numbers(again) == numbers(record)
 
 
@@ -67,13 +69,12 @@ def test_the_code_that_is_here_gives_the_whole_of_a_quick_reference(name: str, t
 
 
 def plan(record: DecisionRecord) -> Audit:
-    asked = record.question
-    place = asked.system if ".py:" not in asked.system else str(ROOT / asked.system)
-    spec = SystemSpec(name=place, options=asked.options)
+    question, facts = record.question, record.facts
+    assert isinstance(question, AuditQuestion)
+    place = facts.system if ".py:" not in facts.system else str(ROOT / facts.system)
+    spec = SystemSpec(name=place, options=question.options)
     system = load_system(spec)
-    same = {name: getattr(asked, name) for name in ("baseline", "repair", "fault", "seeds")}
-    question = AuditQuestion(**same, scenes=asked.n_scenes)
-    return plan_audit(system, spec, question, system.library(asked.library))
+    return plan_audit(system, spec, question, system.library(facts.library))
 
 
 def recipe(target: str, given: str = "") -> list[str]:
@@ -85,17 +86,18 @@ def recipe(target: str, given: str = "") -> list[str]:
 
 @pytest.mark.parametrize(("name", "scenes"), [("quadrotor-L3", None), ("quadrotor-L3-20", 20)])
 def test_the_main_reference_is_what_make_audit_runs(name: str, scenes: int | None) -> None:
-    question, words = record_of(name).question, recipe("audit")
-    assert question.system == "quadrotor"
+    record, words = record_of(name), recipe("audit")
+    question, facts = record.question, record.facts
+    assert facts.system == "quadrotor"
     assert dict(zip(words[::2], words[1::2], strict=True)) == {
         "--baseline": question.baseline,
         "--repair": question.repair,
-        "--fault": question.fault,
-        "--library": question.library,
+        "--fault": str(question.fault),
+        "--library": facts.library,
         "--wind": question.options["wind"],
     }
-    assert question.seeds == (0,)
-    assert scenes is None or question.n_scenes == scenes
+    assert facts.seeds == (0,)
+    assert scenes is None or facts.n_scenes == scenes
 
 
 @pytest.mark.parametrize(

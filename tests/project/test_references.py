@@ -31,10 +31,14 @@ def test_an_example_of_another_package_runs_where_that_is_installed() -> None:
 
 def test_a_run_of_another_kind_of_processor_says_that_trials_may_end_differently() -> None:
     toy = references.load("toy")
-    here = toy.provenance.model_copy(update={"processor": references.processor()})
-    assert references.elsewhere(replace(toy, provenance=here)) == ""
-    there = toy.provenance.model_copy(update={"processor": "Abacus"})
-    assert "flown on Abacus" in references.elsewhere(replace(toy, provenance=there))
+
+    def words(processor: str) -> str:
+        machine = toy.provenance.machine.model_copy(update={"processor": processor})
+        provenance = toy.provenance.model_copy(update={"machine": machine})
+        return references.elsewhere(replace(toy, provenance=provenance))
+
+    assert words(references.processor()) == ""
+    assert "flown on Abacus" in words("Abacus")
 
 
 @pytest.fixture

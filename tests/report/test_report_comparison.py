@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 from rich.console import Console
 
+from faultpath.analyses.facts import ComparisonFacts
 from faultpath.analyses.model import Condition
 from faultpath.report.compared import Compared, differing, titles, together
 from faultpath.report.comparison import effects, facts_table, headline, page, sentences, shown
@@ -23,8 +24,11 @@ Given = tuple[Compared, ...]
 
 
 def run(source: ReportInput, number: int, folder: str = "", **asked: object) -> Compared:
-    question = source.record.question.model_copy(update=asked)
-    record = source.record.model_copy(update={"question": question})
+    record = source.record
+    told = {name: asked.pop(name) for name in {*asked} & {*ComparisonFacts.model_fields}}
+    question = record.question.model_copy(update=asked)
+    facts = record.facts.model_copy(update=told)
+    record = record.model_copy(update={"question": question, "facts": facts})
     return Compared(number, folder or f"runs/{number}", replace(source, record=record))
 
 
@@ -66,7 +70,7 @@ def test_sizes_of_one_fault_are_drawn_over_the_size_and_decided_as_one_family(
     apart = [run(one_seed, i, fault=f"calibration={s}") for i, s in enumerate(sizes, 1)]
     apart = [signed(each, "shared", -1, p_value=1e-5) for each in apart]
     three = together(apart)
-    baseline = three[0].asked.baseline
+    baseline = three[0].question.baseline
     assert headline(three) == (
         f"3 sizes of calibration, under the shared fault: {baseline} ahead at every size"
     )
@@ -128,9 +132,11 @@ def test_only_what_differs_is_told(one_seed: ReportInput) -> None:
     assert differing((first, run(one_seed, 2))) == {}
     options = {"predictor": "wm-a", "plant": "mujoco"}
     second = run(one_seed, 2, fault="calibration=-0.1", options=options, seeds=(0, 1))
-    other = {"packages": {**second.provenance.packages, "torch": "2.14.0"}, "python": "3.12.1"}
-    other |= {"system_fingerprint": "1" * 64}
-    provenance = second.provenance.model_copy(update=other)
+    origin = second.provenance
+    packages = {**origin.machine.packages, "torch": "2.14.0"}
+    machine = origin.machine.model_copy(update={"packages": packages, "python": "3.12.1"})
+    code = origin.code.model_copy(update={"system_fingerprint": "1" * 64})
+    provenance = origin.model_copy(update={"code": code, "machine": machine})
     second = replace(second, source=replace(second.source, provenance=provenance))
     told = dict(differing((first, second)))
     assert len(set(told.pop("Code, data and packages"))) == 2

@@ -57,7 +57,7 @@ def test_every_figure_is_named(page: Page) -> None:
 def test_pairs_of_the_grid_are_those_of_the_record(source: ReportInput) -> None:
     pairs = read_pairs(source.trials, source.record)
     for effect in source.record.effects:
-        for seed, (won, lost) in zip(source.record.question.seeds, effect.won, strict=True):
+        for seed, (won, lost) in zip(source.record.facts.seeds, effect.won, strict=True):
             kinds = [p.kind for p in pairs if (p.condition, p.seed) == (effect.condition, seed)]
             assert kinds.count(PairKind.REPAIR_ONLY) == won
             assert kinds.count(PairKind.BASELINE_ONLY) == lost
@@ -104,7 +104,7 @@ def test_many_scenes_are_counted_and_some_are_listed(
     assert "Every scene" in page.text
     assert "Every scene" not in many.text
     assert not [tag for tag, a in many.tags if tag == "a" and a.get("class") == "pair"]
-    seeds = len(source.record.question.seeds)
+    seeds = len(source.record.facts.seeds)
     kinds = ("both", "repair only", "baseline only", "neither")
     counts = re.findall(", ".join(rf"{kind} (\d+)" for kind in kinds), many.text)
     assert len(counts) == len(source.record.effects)

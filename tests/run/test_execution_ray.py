@@ -202,8 +202,8 @@ def test_a_command_that_was_stopped_and_then_killed_goes_on_to_the_same_bytes(
     for table in ("outcomes.parquet", "traces.parquet"):
         assert (folder / table).read_bytes() == (tmp_path / "alone" / table).read_bytes()
     assert there.record == alone.record
-    assert (there.provenance.workers, alone.provenance.executor) == (1, "")
-    assert there.provenance.executor in (folder / "report.html").read_text()
+    assert (there.provenance.machine.workers, alone.provenance.machine.executor) == (1, "")
+    assert there.provenance.machine.executor in (folder / "report.html").read_text()
 
 
 def words(folder):

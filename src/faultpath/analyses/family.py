@@ -15,6 +15,7 @@ from faultpath.analyses.contrasts import (
     effect_name,
     isolated,
 )
+from faultpath.analyses.facts import ComparisonFacts, Question
 from faultpath.analyses.missing import (
     Decide,
     any_missing,
@@ -24,7 +25,6 @@ from faultpath.analyses.missing import (
     uneven,
 )
 from faultpath.analyses.model import SHARED, Condition
-from faultpath.analyses.question import Question
 from faultpath.core.errors import UserError
 from faultpath.run.question import FEWEST_TRAININGS
 from faultpath.run.trials import Trials
@@ -75,7 +75,11 @@ class Family:
 
 
 def family_of(
-    question: Question, conditions: Sequence[Condition], trials: Trials, untested: Sequence[str]
+    question: Question,
+    facts: ComparisonFacts,
+    conditions: Sequence[Condition],
+    trials: Trials,
+    untested: Sequence[str],
 ) -> tuple[ComparedTrials, Family]:
     """Return the trials of an audit that are compared, and what is decided of them.
 
@@ -90,16 +94,16 @@ def family_of(
         trainings = len({column.tobytes() for column in columns.T[ran]})
         if trainings < FEWEST_TRAININGS:
             raise UserError(
-                f"only {trainings} of the {len(question.seeds)} trainings ran under each condition "
+                f"only {trainings} of the {len(facts.seeds)} trainings ran under each condition "
                 f"and gave different outcomes, and what holds for newly trained models needs "
                 f"{FEWEST_TRAININGS}: leave --generalise models out."
             )
     family = decide_conditions(
         comparison.success,
-        primary=question.primary,
+        primary=facts.primary,
         models=question.generalise == "models",
         untested=untested,
-        shares=alpha_shares(names, question.primary) if question.stop is not None else None,
+        shares=alpha_shares(names, facts.primary) if facts.order is not None else None,
     )
     return comparison, family
 

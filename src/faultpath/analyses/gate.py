@@ -52,7 +52,7 @@ def found(record: DecisionRecord, what: str) -> Answer:
             ahead = f"{record.question.baseline} succeeds more often."
             return Answer(True, f"{capital(places(behind))}, {ahead}")
         case "undecided":
-            primary = record.question.primary
+            primary = record.facts.primary
             main = next((effect for effect in record.effects if effect.condition == primary), None)
             settled = main is not None and (main.sign != 0 or record.is_small(main))
             return Answer(not settled, f"{capital(where(primary))}: {in_short(record, main)}.")

@@ -7,8 +7,8 @@ from pathlib import PurePath
 
 from faultpath.analyses.analysis import Analysis, Round, Rounds
 from faultpath.analyses.decide import decide, primary_condition
+from faultpath.analyses.facts import ComparisonFacts, SceneOrder, facts_of, question_of
 from faultpath.analyses.model import CORRECT, SHARED, Condition, FaultedTap
-from faultpath.analyses.question import Question, StopRule, resolve
 from faultpath.analyses.record import DecisionRecord
 from faultpath.analyses.sentences.wording import counted
 from faultpath.analyses.stopping import stops
@@ -41,8 +41,8 @@ _ORDER_SEED = 0
 class Audit(Analysis[None]):
     """A question and the study that answers it."""
 
-    request: AuditQuestion
-    question: Question
+    question: AuditQuestion
+    facts: ComparisonFacts
     conditions: tuple[Condition, ...]
     study: Study
 
@@ -66,11 +66,18 @@ class Audit(Analysis[None]):
             )
             for condition in self.conditions
         ]
-        return decide(question, conditions, trials, deliveries.findings, repeats=deliveries.repeats)
+        return decide(
+            question,
+            self.facts,
+            conditions,
+            trials,
+            deliveries.findings,
+            repeats=deliveries.repeats,
+        )
 
     def stops(self, trials: Trials) -> bool:
         """Return whether a sequential audit ends with these trials."""
-        return stops(self.question, self.conditions, trials)
+        return stops(self.question, self.facts, self.conditions, trials)
 
 
 def faulted_taps(counts: Sequence[TapCount]) -> tuple[FaultedTap, ...]:
@@ -121,36 +128,28 @@ def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library
         rows=tuple(rows),
         look=min(LOOK, system.block_size or LOOK) if sequential else 0,
     )
-    stop = None
-    if request.stop_when is not None:
-        stop = StopRule(
-            when=request.stop_when,
-            margin_pp=request.margin_pp,
-            order=chosen,
-            order_seed=_ORDER_SEED,
-            look=study.look,
-            trials=len(study.treatments()),
-        )
-    question = resolve(
-        Question,
-        request,
-        spec,
-        library,
-        fault=str(request.fault),
-        faults=faults,
+    order = SceneOrder(
+        scenes=chosen,
+        seed=_ORDER_SEED,
+        per_analysis=study.look,
+        trials=len(study.treatments()),
+    )
+    facts = ComparisonFacts(
+        **facts_of(system, spec, library),
         n_scenes=len(chosen),
+        seeds=request.seeds,
         primary=primary_condition(request.primary or "", conditions),
-        trained=system.trained,
+        faults=faults,
         ends={status.value: words for status, words in system.ends.items()},
         metrics=dict(system.metrics),
-        thresholds=tuple(sorted(set(request.thresholds))),
-        stop=stop,
+        order=order if sequential else None,
     )
     named = [study.name, str(request.fault), PurePath(library.name).stem]
     if request.stop_when is not None:
         small = "" if request.margin_pp is None else f"-within-{request.margin_pp:g}"
         named.append(f"until-{request.stop_when}{small}")
-    return Audit(request, question, system, tuple(named), tuple(conditions), study)
+    question = question_of(request, AuditQuestion, spec)
+    return Audit(question, system, tuple(named), facts, tuple(conditions), study)
 
 
 def faults_by_condition(

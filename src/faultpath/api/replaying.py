@@ -25,7 +25,7 @@ from faultpath.run.execution.dispatch import Built
 from faultpath.run.execution.provenance import amend, processor
 from faultpath.run.execution.recheck import difference
 from faultpath.run.provenance import RunProvenance
-from faultpath.run.question import AuditQuestion, ask
+from faultpath.run.question import AuditQuestion
 from faultpath.run.store.signals import SIGNALS, Signal, encode_signals
 from faultpath.run.store.tables import TrialAddress, address_of
 from faultpath.run.trust import check_named
@@ -101,29 +101,27 @@ def replay(
     Raises `UserError` where the system cannot be built, or no longer has the scenes and variants
     of the run.
     """
-    question = source.record.question
-    if question.judged:
+    question, facts = source.record.question, source.record.facts
+    if not isinstance(question, AuditQuestion):
         raise UserError(
             "other tools ran these trials, and nothing of theirs can be run again here."
         )
-    if SystemSpec(name=question.system).is_object:
+    if SystemSpec(name=facts.system).is_object:
         raise UserError(
-            f"the run is of a {question.system}, which only its own process had: put what builds "
+            f"the run is of a {facts.system}, which only its own process had: put what builds "
             "the system into a file, and audit that."
         )
     treatments = question.baseline, question.repair
-    spec = SystemSpec(name=question.system, options=question.options)
+    spec = SystemSpec(name=facts.system, options=question.options)
     check_named(RECORD, spec, treatments, code, trust)
     chosen = choose(spec.name, spec.options, None, treatments)
     system = chosen.system
-    library = library_of(system, question.library)
-    if library.content_hash != question.library_hash:
+    library = library_of(system, facts.library)
+    if library.content_hash != facts.library_hash:
         raise UserError(
-            f"library '{question.library}' has other scenes than the run: bring its file back."
+            f"library '{facts.library}' has other scenes than the run: bring its file back."
         )
-    kept = ("baseline", "repair", "fault", "seeds")
-    request = ask(AuditQuestion, {name: getattr(question, name) for name in kept})
-    study = plan_audit(system, chosen.spec, request, library).study
+    study = plan_audit(system, chosen.spec, question, library).study
     before = outcomes_at(source.trials)
     named = conditions or {row.condition for row in study.rows}
     addresses = [at for at in before if at.scene in scenes and at.condition in named]
@@ -141,22 +139,22 @@ def replay(
 
 def changes(run: RunProvenance, system: System, state: CodeState) -> tuple[str, ...]:
     """Say what has changed since a run, of all that may decide a trial."""
-    files = {**run.sources, **run.data}, {**state.files, **state.data}
+    files = {**run.code.sources, **run.code.data}, {**state.files, **state.data}
     names = sorted(
         name
         for name in {*files[0], *files[1]}
         if files[0].get(name) != files[1].get(name)
         and (name in files[1] or name.partition("/")[0] not in files[1])  # a package is one entry
     )
-    versions = {"Python": (run.python, python_version())}
+    versions = {"Python": (run.machine.python, python_version())}
     versions |= {
-        name: (text, here) for name, text in run.packages.items() if (here := release(name))
+        name: (text, here) for name, text in run.machine.packages.items() if (here := release(name))
     }
     changed = [f"files ({named(names)})"] * bool(names)
     changed += [f"{name} ({a}, here {b})" for name, (a, b) in versions.items() if a != b]
     for what, before, here in (
-        ("what computes", run.backend, system.backend),
-        (_PROCESSOR, run.processor, processor()),
+        ("what computes", run.machine.backend, system.backend),
+        (_PROCESSOR, run.machine.processor, processor()),
     ):
         changed += [f"{what} ({before or 'not said'}, here {here})"] * (before != here)
     return tuple(changed)

@@ -44,7 +44,7 @@ def effect_rows(record: DecisionRecord) -> list[EffectRow]:
     plot = _axis_of(record).at(6, _WIDE - 6)
     rows: list[EffectRow] = []
     for condition in record.conditions:
-        primary = "primary" if condition.name == record.question.primary else ""
+        primary = "primary" if condition.name == record.facts.primary else ""
         effect, words = effects.get(condition.name), in_short(record, effects.get(condition.name))
         svg = Svg(_WIDE, _HIGH, f"{condition.title}: repair minus baseline, pp")
         _grid(svg, plot, 0, _HIGH)

@@ -30,7 +30,7 @@ from faultpath.report.viewer import viewer_data
 
 def report_page(source: ReportInput) -> str:
     """Return the whole report as HTML: styles, scripts, pictures and data inside."""
-    record, question = source.record, source.record.question
+    record, question, facts = source.record, source.record.question, source.record.facts
     pairs, sampled = read_pairs(source.trials, record), is_sample(source.trials)
     ended_as = {
         condition.name: counts(source.trials, record, condition.name)
@@ -48,10 +48,11 @@ def report_page(source: ReportInput) -> str:
         ("cells.js", "viewer.js"),
         record=record,
         headline=record.headline,
-        estimand=phrases.estimand(question),
-        asked=question,
+        estimand=phrases.estimand(question, facts),
+        question=question,
+        facts=facts,
         provenance=source.provenance,
-        sources=source.provenance.data if question.judged else {},
+        sources=source.provenance.code.data if facts.judged else {},
         n_trials=len(source.trials),
         conditions=titles,
         names=(question.baseline, question.repair),
@@ -68,7 +69,7 @@ def report_page(source: ReportInput) -> str:
         effects=effect_rows(record),
         axis=effect_axis(record),
         numbers=Markup(html(by_condition(record, SHOWN, "Effects; bold is significant"))),
-        fault=wording.faults(question) or "As the system defines it.",
+        fault=wording.faults(facts) or "As the system defines it.",
         variants=list(zip(("baseline", "repair"), source.system.variants, strict=True)),
         forks=[Markup(fork_panel(fork)) for fork in forks(source)],
         frequency=[(Markup(picture), words) for picture, words in frequency_panels(record)],
@@ -81,7 +82,7 @@ def report_page(source: ReportInput) -> str:
                         title,
                         [] if sampled else [p for p in pairs if p.condition == name],
                         ended_as[name],
-                        question.ends,
+                        facts.ends,
                         shown,
                     )
                 ),

@@ -94,7 +94,7 @@ def by_condition(record: DecisionRecord, names: Sequence[str], title: str = "") 
         line(
             title_of,
             *(_entries(record, effect)[name] for name in labels),
-            aside="primary" if effect.condition == record.question.primary else "",
+            aside="primary" if effect.condition == record.facts.primary else "",
         )
         for title_of, effect in zip(titles, record.effects, strict=True)
     ]
@@ -123,37 +123,38 @@ def by_quantity(
 def whole_table(record: DecisionRecord) -> Table:
     """Return every quantity of every condition, with the question as title: the table of a
     paper."""
-    question = record.question
+    question, facts = record.question, record.facts
     variants, seeds = (
         f"{question.repair} against {question.baseline}",
-        wording.seeds(question.seeds),
+        wording.seeds(facts.seeds),
     )
     title = (
-        f"{variants} on {question.system}, fault {question.fault}: {record.scenes_run} scenes of "
-        f"{question.library}, {seeds}"
+        f"{variants} on {facts.system}, fault {question.fault}: {record.scenes_run} scenes of "
+        f"{facts.library}, {seeds}"
     )
-    if question.judged:
+    if facts.judged:
         under = f", {question.fault}" if question.fault else ""
-        title = f"{variants}{under}: {record.scenes_run} {question.judged.unit}s, {seeds}"
-    corrected = f"Holm's correction is for {record.hypotheses} contrasts."
-    if (sets := len(record.break_even + record.break_even_beta)) > 1:
+        title = f"{variants}{under}: {record.scenes_run} {facts.unit}s, {seeds}"
+    corrected = f"Holm's correction is for {record.testing.hypotheses} contrasts."
+    if (sets := len(record.break_evens)) > 1:
         corrected += f" Of {sets} break-even sets each is wrong in at most 5 % of audits, one or "
         corrected += "another of them in more."
     if record.stopped is not None:
-        others = "" if record.hypotheses == 1 else ", half of it for the primary one"
+        contrasts = wording.counted(record.testing.hypotheses, "contrast")
+        others = "" if record.testing.hypotheses == 1 else ", half of it for the primary one"
         corrected = (
             f"The audit was sequential: intervals and p-values hold at whatever scene it stopped. "
-            f"{wording.counted(record.hypotheses, 'contrast')} share the error rate{others}."
+            f"{contrasts} share the error rate{others}."
         )
-    tests = f"Tests: {question.tests}. " if question.tests else ""
+    tests = f"Tests: {facts.tests}. " if facts.tests else ""
     notes = (
         f"Difference: success of {question.repair} minus success of {question.baseline}. Won:lost: "
         f"scenes in which only {question.repair} or only {question.baseline} succeeds. Break-even: "
         "the fault frequencies at which neither is shown to be ahead, with the estimate in front; "
         "any: no bound could be shown. A dash: there is nothing to compute it from."
         + (_BETA if record.break_even_beta else ""),
-        f"Primary contrast: {question.primary}. {tests}{corrected} Intervals and tests speak of "
-        f"{phrases.estimand(question)}.",
+        f"Primary contrast: {facts.primary}. {tests}{corrected} Intervals and tests speak of "
+        f"{phrases.estimand(question, facts)}.",
         *not_standing(record),
         record.headline,
     )
@@ -187,7 +188,7 @@ def ended(record: DecisionRecord) -> Table:
     return Table(
         title="How trials ended",
         corner="Version",
-        columns=(*(question.ends.get(s, s) for s in shown), "median time of successes, s"),
+        columns=(*(record.facts.ends.get(s, s) for s in shown), "median time of successes, s"),
         lines=tuple(lines),
     )
 
@@ -196,7 +197,7 @@ def secondary(record: DecisionRecord) -> Table | None:
     """Return time and metrics, repair minus baseline, by condition; `None` without any."""
     question = record.question
     shown = {"time on joint successes (s)": [of.time_s for of in record.secondary]}
-    for name, metric in question.metrics.items():
+    for name, metric in record.facts.metrics.items():
         label = f"{metric.said(name)} ({metric.unit})"
         shown[label] = [of.metrics.get(name) for of in record.secondary]
 
@@ -223,7 +224,7 @@ def by_threshold(record: DecisionRecord) -> Table | None:
     question = record.question
     if not question.metric:
         return None
-    metric = question.metrics[question.metric]
+    metric = record.facts.metrics[question.metric]
     label = metric.said(question.metric)
     sign = "≤" if metric.better == "less" else "≥"
     means: list[str] = []
@@ -235,7 +236,7 @@ def by_threshold(record: DecisionRecord) -> Table | None:
         one, two = of.metric_means
         means.append(f"{one:.3g} → {two:.3g}, {wording.with_interval(difference, 3)}")
     lines = [line(f"{label} ({metric.unit})", *means)]
-    for number, at in enumerate(question.thresholds):
+    for number, at in enumerate(sorted(set(question.thresholds))):
         rates: list[str] = []
         for of in record.secondary:
             if len(of.thresholds) <= number:

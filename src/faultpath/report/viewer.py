@@ -139,7 +139,7 @@ def _first_condition(record: DecisionRecord, pairs: Mapping[str, Pair]) -> str:
         for condition, pair in pairs.items()
         if pair.sign and signs.get(condition) == pair.sign
     ]
-    primary = record.question.primary or SHARED
+    primary = record.facts.primary or SHARED
     return apart[0] if apart and primary not in apart else primary
 
 
@@ -166,7 +166,7 @@ class _Trials:
             faulted = edges.reshape(-1, 2).tolist()
         return {
             "status": trial.status.value,
-            "ended": wording.ended(self.source.record.question, trial.status),
+            "ended": wording.ended(self.source.record.facts, trial.status),
             "time_s": trial.time_s,
             "track": self._put(np.nan_to_num(track[:, :2])) if len(track) else None,
             "drawn": [self._put(named[DRAWN].values), named[DRAWN].values.shape[1]]

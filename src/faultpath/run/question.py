@@ -173,7 +173,7 @@ class Running(Execution, RepairQuestion):
     """Two variants of a system, compared in scenes, with where and how it runs."""
 
 
-class AuditQuestion(Running):
+class AuditQuestion(RepairQuestion):
     """Question that an audit answers."""
 
     panel: ClassVar[str] = "How it is tested"
@@ -204,12 +204,17 @@ class AuditQuestion(Running):
         description="With --stop-when: a difference shown to be smaller than so many percentage "
         "points ends it too.",
     )
+
+
+class AuditCall(AuditQuestion, Running):
+    """An audit that is called for: its question, and how it runs."""
+
     signals: Annotated[bool, Flag(panel=ADVANCED)] = Field(
         default=True, description="Run the report's first scenes once more to plot their signals."
     )
 
 
-class MapQuestion(Running):
+class MapQuestion(RepairQuestion):
     """Question that a reversal map answers."""
 
     panel: ClassVar[str] = "What is mapped"
@@ -240,8 +245,12 @@ class MapQuestion(Running):
     )
 
 
-class ScanRequest(Request):
-    """A variant of a system, in scenes."""
+class MapCall(MapQuestion, Running):
+    """A map that is called for: its question, and how it runs."""
+
+
+class ScanQuestion(Request):
+    """Question that a scan answers: of a variant of a system, in scenes."""
 
     panel: ClassVar[str] = "What is scanned"
 
@@ -268,5 +277,5 @@ class ScanRequest(Request):
     )
 
 
-class ScanQuestion(Execution, ScanRequest):
-    """Question that a scan answers."""
+class ScanCall(Execution, ScanQuestion):
+    """A scan that is called for: its question, and how it runs."""

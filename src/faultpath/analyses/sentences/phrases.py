@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Sequence
 
 from faultpath.analyses.effects import Change, Effect
+from faultpath.analyses.facts import ComparisonFacts, Question
 from faultpath.analyses.model import CORRECT, SHARED, AuditResult, Invalid
-from faultpath.analyses.question import Question
 from faultpath.analyses.sentences.wording import (
     capital,
     counted,
@@ -24,18 +24,18 @@ NO_RESULT: dict[Invalid, str] = {
 """Headlines of results in which nothing can be significant."""
 
 
-def estimand(question: Question) -> str:
+def estimand(question: Question, facts: ComparisonFacts) -> str:
     """Return what intervals and tests speak of."""
     if question.generalise == "models":
         return "new scenes like these and models newly trained with other seeds"
-    if question.judged and question.judged.unit == "task":
+    if facts.unit == "task":
         return "new tasks like these"
-    return "new scenes like these" + (", for these trained models" if question.trained else "")
+    return "new scenes like these" + (", for these trained models" if facts.trained else "")
 
 
 def margin(record: AuditResult) -> str:
     """Return the margin below which a sequential audit counts a difference as small."""
-    return f"{(record.question.stop and record.question.stop.margin_pp) or 0.0:g} pp"
+    return f"{record.question.margin_pp or 0.0:g} pp"
 
 
 def adjusted(record: AuditResult, of: Effect | Change) -> str:
@@ -43,7 +43,7 @@ def adjusted(record: AuditResult, of: Effect | Change) -> str:
     if of.corrected_p is None:
         return ""
     p = p_value(of.corrected_p)
-    return f"p {p if p.startswith('<') else f'= {p}'} {record.question.family}"
+    return f"p {p if p.startswith('<') else f'= {p}'} {record.facts.family}"
 
 
 def only_alone(of: Effect | Change) -> bool:
@@ -115,7 +115,7 @@ def _ran(record: AuditResult, effect: Effect) -> str:
     needed = series([f"{count} of {name}" for count, name in of if count])
     how = (
         "add their outcomes to the results"
-        if question.judged
+        if record.facts.judged
         else "the same command tries them again"
     )
     return (
@@ -194,10 +194,11 @@ def no_pair(condition: str) -> str:
 
 def not_standing(record: AuditResult) -> Iterator[str]:
     """Say of each interval that excludes 0 without a significant difference why it is not one."""
+    contrasts = f"{record.testing.hypotheses} contrasts"
     for effect in () if record.invalid else filter(only_alone, record.effects):
         yield (
             f"{capital(where(effect.condition))}, the interval excludes 0, but "
-            f"{adjusted(record, effect)} ({record.hypotheses} contrasts): the difference is not "
+            f"{adjusted(record, effect)} ({contrasts}): the difference is not "
             "significant."
         )
 
@@ -221,9 +222,9 @@ def hardly_acted(record: AuditResult) -> Iterator[str]:
 def partly_measured(record: AuditResult) -> Iterator[str]:
     """Say of which metrics not every trial has a value."""
     for effect, secondary in zip(record.effects, record.secondary, strict=True):
-        for name in record.question.metrics:
+        for name in record.facts.metrics:
             whole = secondary.metrics[name].n_scenes if name in secondary.metrics else 0
-            if whole < effect.scenes and (whole or record.question.judged):
+            if whole < effect.scenes and (whole or record.facts.judged):
                 scenes = f"{whole} of {counted(effect.scenes, 'scene')}"
                 yield (
                     f"{capital(where(effect.condition))}, {name} is compared in {scenes}: only "
@@ -240,7 +241,7 @@ def failed_trials(record: AuditResult) -> Iterator[str]:
             continue
         if not (missing.repair or missing.baseline or missing.unsettled):
             continue
-        lost = "failed or missing" if question.judged else "failed"
+        lost = "failed or missing" if record.facts.judged else "failed"
         yield (
             f"{capital(where(effect.condition))}, {counted(missing.repair, 'trial')} of "
             f"{question.repair} {lost}, {missing.baseline} of {question.baseline}: depending on "
@@ -249,13 +250,14 @@ def failed_trials(record: AuditResult) -> Iterator[str]:
         )
 
 
-def looks(record: AuditResult) -> str:
+def earlier_analyses(record: AuditResult) -> str:
     """Say what was concluded before, and what that does to what is significant now."""
-    counts = sorted({look.scenes for look in record.earlier if look.scenes is not None})
+    earlier = record.earlier
+    counts = sorted({analysis.scenes for analysis in earlier if analysis.scenes is not None})
     with_scenes = f" with {series([str(n) for n in counts])} scenes" if counts else ""
-    led = series([f"'{name}'" for name in dict.fromkeys(look.primary for look in record.earlier)])
+    primaries = series(list(dict.fromkeys(f"'{analysis.primary}'" for analysis in earlier)))
     return (
-        f"This audit was concluded before{with_scenes}, led by {led}: after such a look, more "
-        "than 5 % of audits would report a difference between equally good versions. Run it in "
-        "scenes that no audit has looked at, or with --stop-when, which allows for looks."
+        f"This audit was concluded before{with_scenes}, led by {primaries}: after such a look, "
+        "more than 5 % of audits would report a difference between equally good versions. Run it "
+        "in scenes that no audit has looked at, or with --stop-when, which allows for looks."
     )

@@ -15,6 +15,7 @@ from pydantic import BaseModel, ValidationError
 from yaml.events import AliasEvent, CollectionEndEvent, CollectionStartEvent, NodeEvent
 from yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
+from faultpath.core.errors import UserError
 from faultpath.core.numbers import number_in, whole_in
 from faultpath.core.validation_messages import misfit_of
 
@@ -88,6 +89,8 @@ def model_of(data: bytes, model: type[_Model]) -> _Model:
         return model.model_validate_json(data)
     except ValidationError as error:
         raise Misread(str(misfit_of(error))) from None
+    except UserError as error:  # of a text in it, such as a fault's
+        raise Misread(str(error)) from None
 
 
 @dataclass(frozen=True)

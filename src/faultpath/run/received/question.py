@@ -49,6 +49,13 @@ class JudgeQuestion(Asked):
 
     panel: ClassVar[str] = "What is compared"
 
+    # What only an audit may be asked.
+    options: ClassVar[Mapping[str, str]] = {}
+    metric: ClassVar[str] = ""
+    thresholds: ClassVar[tuple[float, ...]] = ()
+    stop_when: ClassVar[None] = None
+    margin_pp: ClassVar[None] = None
+
     baseline: str = Field(description="Version to compare with, as the results name it.")
     repair: str = Field(description="Version that is meant to be better.")
     columns: Annotated[
