@@ -77,13 +77,17 @@ def chosen_scenes(
                 raise UserError(f"the run: {unknown(what, name, known)}")
     if scenes:
         return tuple(dict.fromkeys(scenes))
-    return tuple(scene for scene, _ in shown_first(source.record, source.trials))
+    return tuple(scene for scene, _ in shown_first(source.record, source.trials, source.signals))
 
 
-def shown_first(record: DecisionRecord, trials: Trials) -> tuple[tuple[str, int], ...]:
-    """Return the scenes that the report begins with, and the seed of each."""
+def shown_first(
+    record: DecisionRecord, trials: Trials, recorded: Iterable[TrialAddress] = ()
+) -> tuple[tuple[str, int], ...]:
+    """Return the scenes that the report begins with, and the seed of each; `recorded` trials'
+    scenes come first."""
     pairs = read_pairs(trials, record)
-    return picked(record, pairs) or tuple(by_scene(pairs))[:1]
+    kept = {(at.scene, at.seed) for at in recorded}
+    return picked(record, pairs, kept) or tuple(by_scene(pairs))[:1]
 
 
 def replay(

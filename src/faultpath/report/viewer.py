@@ -56,7 +56,8 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
     flat, every = _flat(source, tracks), by_scene(pairs)
     recorded = {(at.scene, at.seed) for at in source.signals}
     tracked = {(at.scene, at.seed) for at, track in tracks.items() if len(track)}
-    chosen = [at for at in choose(source.record, pairs) if at in (tracked or recorded)]
+    first = choose(source.record, pairs, recorded)
+    chosen = [at for at in first if at in (tracked or recorded)]
     playable = [at for at in dict.fromkeys((*chosen, *every)) if at in (tracked or recorded)]
     few = [at for at in playable if at in recorded][:_MOST_WITH_SIGNALS]
     groups = {at: of for at, of in every.items() if at in (tracked or few)}
