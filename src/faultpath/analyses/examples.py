@@ -81,9 +81,7 @@ def captions(pairs: Sequence[Pair], sampled: bool = False) -> dict[At, str]:
     }
 
 
-def _away(
-    pairs: Sequence[Pair], patterns: Mapping[At, Pattern]
-) -> dict[At, float]:
+def _away(pairs: Sequence[Pair], patterns: Mapping[At, Pattern]) -> dict[At, float]:
     """Return how far from the median of its pattern the trials of a scene have parted, s."""
     groups = by_scene(pairs)
     parted = {at: _parted_s(groups[at]) for at in patterns}
@@ -98,9 +96,7 @@ def _parted_s(pairs: Mapping[str, Pair]) -> float:
     """Return when the pairs of a scene that end differently have parted, summed; of all pairs where
     none does. Other tools need not say times: these count as none."""
     apart = [pair for pair in pairs.values() if pair.sign] or list(pairs.values())
-    times = (
-        min(trial.time_s for trial in (pair.baseline, pair.repair) if trial) for pair in apart
-    )
+    times = (min(trial.time_s for trial in (pair.baseline, pair.repair) if trial) for pair in apart)
     return sum(time for time in times if not math.isnan(time))
 
 

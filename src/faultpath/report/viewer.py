@@ -13,8 +13,11 @@ from numpy.typing import NDArray
 from faultpath.analyses.examples import captions, choose
 from faultpath.analyses.model import SHARED
 from faultpath.analyses.pairs import Pair, by_scene, is_sample
+from faultpath.analyses.parting import Heard, parting
 from faultpath.analyses.record import DecisionRecord
 from faultpath.analyses.sentences import wording
+from faultpath.analyses.sentences.parting import DIFFERS
+from faultpath.analyses.sentences.parting import parted as said
 from faultpath.report.inputs import ReportInput
 from faultpath.report.plots import Plot, first_plot, plots_of
 from faultpath.run.store.signals import DRAWN, IN_FORCE, Signal, Signals
@@ -108,6 +111,7 @@ def _scenes(
                     "condition": pair.condition,
                     "kind": pair.kind.value,
                     "void": pair.void_reason,
+                    "parting": trials.parting(pair),
                     "baseline": trials.packed(question.baseline, pair, pair.baseline),
                     "repair": trials.packed(question.repair, pair, pair.repair),
                 }
@@ -176,6 +180,22 @@ class _Trials:
             "lines": self._lines(named),
             "faulted": faulted,
         }
+
+    def parting(self, pair: Pair) -> dict[str, Any] | None:
+        """Return where the two trials part, in words and as steps; `None` where that was not
+        recorded of both."""
+        record, signals = self.source.record, self.source.signals
+        names = record.question.baseline, record.question.repair
+        addresses = [TrialAddress(n, pair.condition, pair.seed, pair.scene) for n in names]
+        if not all(signals.get(at) for at in addresses):
+            return None
+        one, other = (
+            Heard(at, outcome, signals[at])
+            for at, outcome in zip(addresses, (pair.baseline, pair.repair), strict=True)
+        )
+        parted = parting(self.source.system, one, other)
+        marks = [[first.step, DIFFERS[kind]] for kind, first in parted.first.items()]
+        return {"said": said(record.question, parted), "marks": marks}
 
     def _put(self, metres: NDArray[np.float32]) -> int:
         """Put coordinates into `series` as whole centimetres, and return where they begin."""
