@@ -66,17 +66,20 @@ def choose(
 
 
 def captions(pairs: Sequence[Pair], sampled: bool = False) -> dict[At, str]:
-    """Say of each scene and seed in how many the same versions succeed under every condition."""
+    """Say of each scene and seed in how many the same versions succeed under every condition, and
+    whether it is typical of them."""
     patterns = _patterns(pairs)
     scenes, seeds = (
         (len(set(values)) for values in zip(*patterns, strict=True)) if patterns else (0, 0)
     )
     noun = "sampled scenes" if sampled else "scenes"
     of = f"{scenes} {noun}" if seeds < 2 else f"{len(patterns)} ({scenes} {noun}, {seeds} seeds)"
-    like = Counter(patterns.values())
+    like, away = Counter(patterns.values()), _away(pairs, patterns)
+    typical = " It is a typical one: the first trial of a pair ends when it does in the median."
     return {
         at: f"{like[pattern]} of {of} {'goes' if like[pattern] == 1 else 'go'} like this one: "
         "the same versions succeed under each condition."
+        f"{typical if like[pattern] > 2 and not away[at] else ''}"
         for at, pattern in patterns.items()
     }
 

@@ -32,10 +32,16 @@ class Ended(Frozen):
 
     variant: str
     condition: str
-    status: Status
-    time_s: float | None
-    """`None` where other tools did not say."""
+    status: Status | None = None
+    """`None` of a trial that never ran."""
+    time_s: float | None = None
+    """`None` where nobody says when."""
     error: str = ""
+
+    @property
+    def missing(self) -> bool:
+        """Whether it cannot be compared with another one."""
+        return self.status in (None, Status.FAILED)
 
 
 class Difference(Frozen, allow_inf_nan=False):
@@ -64,8 +70,7 @@ class Parting(Frozen):
 
     scene: str
     seed: int
-    trials: tuple[Ended | None, Ended | None]
-    """`None` for a trial that never ran."""
+    trials: tuple[Ended, Ended]
     compared: tuple[Kind, ...] = ()
     """What is known of both, so that where it differs nowhere it is equal; empty where there is
     nothing to compare."""
@@ -111,7 +116,7 @@ def parting(system: SystemShown, one: Heard, other: Heard) -> Parting:
     """Compare two trials of a scene: both variants, or one variant under two conditions."""
     at = one.address
     ends = _ended(one), _ended(other)
-    if any(end is None or end.status is Status.FAILED for end in ends):
+    if any(end.missing for end in ends):
         return Parting(scene=at.scene, seed=at.seed, trials=ends)
     series: dict[Kind, list[_Series]] = {
         "reading": list(_readings(system, one, other)),
@@ -134,15 +139,16 @@ def parting(system: SystemShown, one: Heard, other: Heard) -> Parting:
     )
 
 
-def _ended(trial: Heard) -> Ended | None:
-    if trial.outcome is None:
-        return None
+def _ended(trial: Heard) -> Ended:
+    variant, condition = trial.address.variant, trial.address.condition
+    if (outcome := trial.outcome) is None:
+        return Ended(variant=variant, condition=condition)
     return Ended(
-        variant=trial.address.variant,
-        condition=trial.address.condition,
-        status=trial.outcome.status,
-        time_s=None if np.isnan(trial.outcome.time_s) else trial.outcome.time_s,
-        error=trial.outcome.error or "",
+        variant=variant,
+        condition=condition,
+        status=outcome.status,
+        time_s=None if np.isnan(outcome.time_s) else outcome.time_s,
+        error=outcome.error or "",
     )
 
 

@@ -45,7 +45,7 @@ def report_page(source: ReportInput) -> str:
     return render(
         "report.html.j2",
         (*STYLES, "viewer.css"),
-        ("cells.js", "viewer.js"),
+        ("cells.js", "page.js", "viewer.js"),
         record=record,
         headline=record.headline,
         estimand=phrases.estimand(question),

@@ -16,7 +16,7 @@ from faultpath.analyses.pairs import Pair, by_scene, is_sample
 from faultpath.analyses.parting import Heard, parting
 from faultpath.analyses.record import DecisionRecord
 from faultpath.analyses.sentences import wording
-from faultpath.analyses.sentences.parting import DIFFERS
+from faultpath.analyses.sentences.parting import DIFFERS, ending
 from faultpath.analyses.sentences.parting import parted as said
 from faultpath.report.inputs import ReportInput
 from faultpath.report.plots import Plot, first_plot, plots_of
@@ -194,7 +194,8 @@ class _Trials:
             for at, outcome in zip(addresses, (pair.baseline, pair.repair), strict=True)
         )
         parted = parting(self.source.system, one, other)
-        marks = [[first.step, DIFFERS[kind]] for kind, first in parted.first.items()]
+        marks = [(first.step, DIFFERS[kind]) for kind, first in parted.first.items()]
+        marks += ending(parted, self.source.system.control_dt_s)
         return {"said": said(record.question, parted), "marks": marks}
 
     def _put(self, metres: NDArray[np.float32]) -> int:

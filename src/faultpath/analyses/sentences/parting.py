@@ -3,6 +3,8 @@
 from faultpath.analyses.parting import Difference, Ended, Kind, Parting
 from faultpath.analyses.question import Question
 from faultpath.analyses.sentences.wording import MINUS, capital, ended, series, unit, where
+from faultpath.core.text import one_line
+from faultpath.system.outcome import control_steps
 
 DIFFERS: dict[Kind, str] = {
     "reading": "readings differ",
@@ -16,25 +18,28 @@ _LEAST, _MOST = 3, 17
 
 def parted(question: Question, parting: Parting) -> str:
     """Say what differs first between two trials and when, what follows, and how each ended."""
-    one, other = parting.trials
-    if missing := [words for end, words in _missing(question, parting) if end]:
+    if missing := [_missing(end) for end in parting.trials if end.missing]:
         return f"Nothing to compare: {series(missing)}."
-    assert one is not None and other is not None
+    one, other = parting.trials
     clauses = [*_differences(one, other, parting), _ends(question, one, other)]
     return f"{capital('; '.join(clauses))}.{_alone(one, other, parting)}"
 
 
-def _missing(question: Question, parting: Parting) -> list[tuple[bool, str]]:
-    """Return of each trial whether it is missing, and how that is said."""
-    roles = question.baseline, question.repair
-    words: list[tuple[bool, str]] = []
-    for end, role in zip(parting.trials, roles, strict=True):
-        if end is None:
-            words.append((True, f"{role} did not run"))
-        else:
-            why = f" ({end.error})" if end.error else ""
-            words.append((end.status == "failed", f"{end.variant} failed{why}"))
-    return words
+def ending(parting: Parting, dt_s: float) -> list[tuple[int, str]]:
+    """Return the step at which the first of the two trials has ended, with who that is; nothing
+    where both do at once."""
+    times = [(end.time_s, end.variant) for end in parting.trials if end.time_s is not None]
+    if len(times) < 2 or times[0][0] == times[1][0]:
+        return []
+    time_s, variant = min(times)
+    return [(control_steps(time_s, dt_s), f"{variant} has ended")]
+
+
+def _missing(trial: Ended) -> str:
+    what = f"{trial.variant} {where(trial.condition)}"
+    if trial.status is None:
+        return f"{what} did not run"
+    return f"{what} failed{f' ({one_line(trial.error)})' if trial.error else ''}"
 
 
 def _differences(one: Ended, other: Ended, parting: Parting) -> list[str]:
@@ -81,7 +86,7 @@ def _beginning(kind: Kind, at: Difference, one: Ended, other: Ended) -> str:
 def _ends(question: Question, one: Ended, other: Ended) -> str:
     first, second = (
         f"{'' if end.time_s is None else f' at {_time(end.time_s)} s'} "
-        f"({ended(question, end.status)})"
+        f"({ended(question, end.status or '')})"
         for end in (one, other)
     )
     if first == second:
