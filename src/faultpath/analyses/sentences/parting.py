@@ -16,6 +16,15 @@ _LEAST, _MOST = 3, 17
 """Digits of the two values: so few that they still look different."""
 
 
+def compared(parting: Parting) -> str:
+    """Name what a parting is of: scene, seed, and what the two trials have in common."""
+    one, other = parting.trials
+    both = f"{one.condition}, {one.variant} and {other.variant}"
+    if one.variant == other.variant:
+        both = f"{one.variant}, {one.condition} and {other.condition}"
+    return f"{parting.scene}, seed {parting.seed}, {both}"
+
+
 def parted(question: Question, parting: Parting) -> str:
     """Say what differs first between two trials and when, what follows, and how each ended."""
     if missing := [_missing(end) for end in parting.trials if end.missing]:
