@@ -58,17 +58,17 @@ def _differences(one: Ended, other: Ended, parting: Parting) -> list[str]:
     equal = [kind for kind in order if kind in parting.compared and kind not in first]
     if not parting.compared:
         return ["nothing was recorded of both trials that could be compared"]
+    same = [f"no recorded {series(list(equal)).replace(' and ', ' or ')} differs"] if equal else []
     if not first:
-        return [f"no recorded {series(list(equal)).replace(' and ', ' or ')} differs"]
+        return same
     at = parting.first[first[0]]
     clauses = [_beginning(first[0], at, one, other)]
     for kind in first[1:]:
         late = parting.first[kind].time_s - at.time_s
         when = f"{_time(late)} s later " if late > 0 else ""
-        same = "" if when else " at the same time"
-        clauses.append(f"{when}the {DIFFERS[kind]}{same}")
+        clauses.append(f"{when}the {DIFFERS[kind]}{'' if when else ' at the same time'}")
         at = parting.first[kind]
-    return [*clauses, *(f"no recorded {kind} differs" for kind in equal)]
+    return clauses + same
 
 
 def _beginning(kind: Kind, at: Difference, one: Ended, other: Ended) -> str:
