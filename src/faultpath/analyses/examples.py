@@ -75,11 +75,12 @@ def captions(pairs: Sequence[Pair], sampled: bool = False) -> dict[At, str]:
     noun = "sampled scenes" if sampled else "scenes"
     of = f"{scenes} {noun}" if seeds < 2 else f"{len(patterns)} ({scenes} {noun}, {seeds} seeds)"
     like, away = Counter(patterns.values()), _away(pairs, patterns)
-    typical = " It is a typical one: the first trial of a pair ends when it does in the median."
+    varied = {patterns[at] for at, seconds in away.items() if seconds}
+    typical = " It is a typical one: its trials end apart at the median time of these."
     return {
         at: f"{like[pattern]} of {of} {'goes' if like[pattern] == 1 else 'go'} like this one: "
         "the same versions succeed under each condition."
-        f"{typical if like[pattern] > 2 and not away[at] else ''}"
+        f"{typical if pattern in varied and not away[at] else ''}"
         for at, pattern in patterns.items()
     }
 
