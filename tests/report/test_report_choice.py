@@ -95,6 +95,8 @@ def test_of_scenes_that_go_alike_the_median_one_is_shown_and_stays_shown(
     said = {pair.index: captions(pairs)[pair.scene, 0] for pair in pairs}
     assert [place for place in said if "It is a typical one" in said[place]] == [2]
     assert begun(one_seed, record, pairs, recorded=(1,))[0] == 1
+    other = scenes(one_seed, "bbrb", "bbbb", "bbrb")
+    assert begun(one_seed, record, other, recorded=(1,))[-1] == 1, "it goes otherwise"
     alike = timed(pairs, *[float("nan")] * 5)
     assert begun(one_seed, record, alike)[0] == 0
     assert not any("typical" in words for words in captions(alike).values())

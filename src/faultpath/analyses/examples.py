@@ -32,7 +32,7 @@ def choose(
 ) -> tuple[At, ...]:
     """Return up to six scenes with their seeds by the rule at the top.
 
-    Those that a run has `recorded` come first, so that its examples stay what they were.
+    Of scenes that go alike those that a run has `recorded` come first: its examples stay.
     """
     patterns, index = _patterns(pairs), {(pair.scene, pair.seed): pair.index for pair in pairs}
     away = _away(pairs, patterns)
@@ -52,7 +52,7 @@ def choose(
         )
         alike = len({kind for _, kind in pattern}) == 1 and pattern[0][1] not in variants
         shows = (-reversals, -sum(shown.values()), alike, -counts[pattern])
-        return at not in recorded, *shows, away[at], index[at], at[1]
+        return *shows, at not in recorded, away[at], index[at], at[1]
 
     ranked = sorted(patterns, key=order)
     chosen: list[At] = []

@@ -84,8 +84,8 @@ def chosen_scenes(
 def shown_first(
     record: DecisionRecord, trials: Trials, recorded: Iterable[TrialAddress] = ()
 ) -> tuple[tuple[str, int], ...]:
-    """Return the scenes that the report begins with, and the seed of each; `recorded` trials'
-    scenes come first."""
+    """Return the scenes that the report begins with, and the seed of each; of scenes that go alike
+    those of `recorded` trials come first."""
     pairs = read_pairs(trials, record)
     kept = {(at.scene, at.seed) for at in recorded}
     return picked(record, pairs, kept) or tuple(by_scene(pairs))[:1]
