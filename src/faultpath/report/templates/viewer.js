@@ -1,4 +1,3 @@
-"use strict";
 // Every trial again: a scene on one clock, a column a condition; scene, condition and time are in the address.
 if (document.getElementById("viewer-data")) {
   const VERSIONS = ["baseline", "repair"], SIGNS = { success: "✓", crash: "✕" };
@@ -139,7 +138,7 @@ if (document.getElementById("viewer-data")) {
       return made;
     };
     // The list has all scenes, or those in which one variant alone succeeds on one condition.
-    const every = [...data.scenes.keys()];
+    const every = [...data.scenes.keys()], most = 30;
     const apart = data.conditions.flatMap(({ name, title }) => ["repair", "baseline"].map((variant) => {
       const places = every.filter((place) => data.scenes[place].pairs.some((p) => p.condition === name && p.kind === `${variant}-only`));
       return { label: `${title}: only the ${variant} succeeds`, places };
@@ -149,10 +148,10 @@ if (document.getElementById("viewer-data")) {
     const labels = [all, ...apart].map(({ label, places }) => `${label} (${places.length}${part ? " recorded" : ""})`);
     if (part) labels[0] = `${every.length} of ${data.ran} ${noun} recorded`;
     get("show").replaceChildren(...labels.map((label, n) => make("option", label, { value: n })));
-    // A menu of hundreds is no menu: it has the first scenes that hold every word that is looked for.
-    const most = 30;
-    const offer = (n) => {
-      const words = get("find").value.toLowerCase().split(/\s+/).filter(Boolean), { places } = [all, ...apart][n];
+    // A menu of hundreds is no menu: it has the first scenes whose names have every word that is looked for.
+    const offer = (n, find = get("find").value) => {
+      get("find").value = find;
+      const words = find.toLowerCase().split(/\s+/).filter(Boolean), { places } = [all, ...apart][n];
       const match = places.filter((place) => words.every((word) => nameOf(place).toLowerCase().includes(word)));
       const listed = match.slice(0, most), more = match.length - listed.length, first = n === 0 && !words.length ? data.picked : [];
       if (match.length && !match.includes(state.scene)) state.scene = match[0];
@@ -178,11 +177,11 @@ if (document.getElementById("viewer-data")) {
 
     // Where the two trials of the chosen condition part: said, and marked on the bar.
     const mark = () => {
-      const { title } = columns.find((c) => c.condition === state.condition), pair = current().pairs.find((p) => p.condition === state.condition);
+      const pair = current().pairs.find((p) => p.condition === state.condition);
       const marks = pair?.parting?.marks ?? [], steps = [...new Set(marks.map(([step]) => step))];
       for (const { condition, column } of columns) column.classList.toggle("chosen", condition === state.condition);
       get("parting").hidden = !pair?.parting;
-      get("said").textContent = `${title}. ${pair?.parting?.said ?? ""}`;
+      get("said").textContent = pair?.parting ? `${columns.find((c) => c.condition === state.condition).title}. ${pair.parting.said}` : "";
       get("ticks").replaceChildren(...steps.map((step) => make("option", "", { value: step })));
       get("marks").replaceChildren(...steps.map((step) => {
         const words = marks.filter(([at]) => at === step).map(([, what]) => what).join(", ");
@@ -259,8 +258,7 @@ if (document.getElementById("viewer-data")) {
       if (place < 0) return false;
       stop();
       state.scene = place;
-      get("find").value = "";
-      offer(0);
+      offer(0, "");
       if (data.conditions.some((p) => p.name === asked.condition)) state.condition = asked.condition;
       reset(Number.isFinite(Number(asked.t ?? NaN)) ? Math.round(Number(asked.t) / dt) : undefined);
       document.getElementById("viewer").scrollIntoView({ block: "start" });
