@@ -62,8 +62,8 @@ def audit(folder: Path) -> DecisionRecord:
 
 def _keep_examples(folder: Path, record: DecisionRecord, trials: Trials) -> None:
     """Leave out the traces of all trials but those of the scenes that the report begins with."""
-    shown = shown_first(record, trials)
     traces = decode_traces((folder / TRACES).read_bytes())
+    shown = shown_first(record, trials, traces)
     kept = {at: trace for at, trace in traces.items() if (at.scene, at.seed) in shown}
     if len(kept) < len(traces):
         examples = decode_outcomes((folder / OUTCOMES).read_bytes(), kept)

@@ -131,7 +131,11 @@ def replay(base: Path, here: Path, rng: Random) -> list[object]:
         content["facts"] |= {"system": named}
     path.write_text(json.dumps(content))
     sign(here / "run")
-    return ["replay", "run", *rng.choice(([], ["--signals"], ["--scene", rng.choice(VALUES)]))]
+    return [
+        "replay",
+        "run",
+        *rng.choice(([], ["--signals"], ["--where"], ["--scene", rng.choice(VALUES)])),
+    ]
 
 
 CASES: dict[str, Case] = {

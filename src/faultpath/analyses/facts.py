@@ -18,9 +18,9 @@ from faultpath.system.system import System
 _Question = TypeVar("_Question", bound=Request)
 
 
-def _verb(question: object) -> str:
-    names = question if isinstance(question, Mapping) else type(question).model_fields
-    return "judge" if "cluster" in names else "audit"
+def _verb(question: Mapping[str, object] | Request) -> str:
+    named = "cluster" in question if isinstance(question, Mapping) else hasattr(question, "cluster")
+    return "judge" if named else "audit"
 
 
 Question: TypeAlias = Annotated[

@@ -173,7 +173,7 @@ def _recorded(
 
     What goes wrong here is a finding, never an error of the audit.
     """
-    few = shown_first(record, result.trials)[: 1 + record.scenes // _SCENES_FOR_ONE]
+    few = shown_first(record, result.trials, recorded)[: 1 + record.scenes // _SCENES_FOR_ONE]
     named = {condition.name for condition in record.conditions}
     before = outcomes_at(result.trials)
     missing = [

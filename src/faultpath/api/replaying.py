@@ -7,6 +7,7 @@ from platform import python_version
 
 from faultpath.analyses.examples import choose as picked
 from faultpath.analyses.pairs import by_scene, read_pairs
+from faultpath.analyses.parting import Heard, Parting, parting
 from faultpath.analyses.planning import plan_audit
 from faultpath.analyses.record import DecisionRecord
 from faultpath.api.folders import RECORD
@@ -77,13 +78,17 @@ def chosen_scenes(
                 raise UserError(f"the run: {unknown(what, name, known)}")
     if scenes:
         return tuple(dict.fromkeys(scenes))
-    return tuple(scene for scene, _ in shown_first(source.record, source.trials))
+    return tuple(scene for scene, _ in shown_first(source.record, source.trials, source.signals))
 
 
-def shown_first(record: DecisionRecord, trials: Trials) -> tuple[tuple[str, int], ...]:
-    """Return the scenes that the report begins with, and the seed of each."""
+def shown_first(
+    record: DecisionRecord, trials: Trials, recorded: Iterable[TrialAddress] = ()
+) -> tuple[tuple[str, int], ...]:
+    """Return the scenes that the report begins with, and the seed of each; of scenes that go alike
+    those of `recorded` trials come first."""
     pairs = read_pairs(trials, record)
-    return picked(record, pairs) or tuple(by_scene(pairs))[:1]
+    kept = {(at.scene, at.seed) for at in recorded}
+    return picked(record, pairs, kept) or tuple(by_scene(pairs))[:1]
 
 
 def replay(
@@ -211,6 +216,47 @@ def run_again(
     built = Built.of(system, study.system, study.library)
     run_blocks(executor, built, tasks, settle)
     return [replays[at] for at in before if at in replays]
+
+
+def where_parted(
+    source: ReportInput,
+    replays: Sequence[Replayed],
+    scenes: Sequence[str],
+    conditions: Sequence[str] = (),
+) -> list[Parting]:
+    """Return where trials that were run again part: the two versions under each condition, and,
+    where several `conditions` are named, each version under the first and under each other.
+
+    Left out is what came out otherwise than in the run.
+    """
+    question, trials = source.record.question, source.trials
+    versions = question.baseline, question.repair
+    known = [condition.name for condition in source.record.conditions]
+    named = list(dict.fromkeys(conditions)) or known
+    couples = [tuple((version, name) for version in versions) for name in named]
+    couples += [
+        ((version, conditions[0]), (version, name))
+        for version in versions
+        for name in named[1:] * bool(conditions)
+    ]
+    again = {replay.address: replay for replay in replays}
+    ids = [scene.id for scene in trials.scenes]
+
+    def heard(variant: str, condition: str, place: int, scene: str) -> Heard:
+        at = TrialAddress(variant, condition, trials.seeds[place], scene)
+        row = int(trials.planned(variant, condition)[place, ids.index(scene)])
+        outcome = trials.outcome(row, scene) if row >= 0 else None
+        return Heard(at, outcome, again[at].signals if at in again else ())
+
+    partings: list[Parting] = []
+    for scene in scenes:
+        for place in range(len(trials.seeds)):
+            for couple in couples:
+                one, other = (heard(*of, place, scene) for of in couple)
+                unlike = (again[of.address].differs for of in (one, other) if of.address in again)
+                if not any(unlike):
+                    partings.append(parting(source.system, one, other))
+    return partings
 
 
 def keep_signals(folder: Path, source: ReportInput, replays: Sequence[Replayed]) -> list[Path]:

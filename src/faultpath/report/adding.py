@@ -74,8 +74,8 @@ def adding(source: ReportInput, pairs: Sequence[Pair]) -> Adding | None:
 
     `None` where the system names no errors, or nothing was recorded.
     """
-    groups = by_scene(pairs)
-    for at in choose(source.record, pairs) if source.signals else ():
+    groups, recorded = by_scene(pairs), {(at.scene, at.seed) for at in source.signals}
+    for at in choose(source.record, pairs, recorded) if recorded else ():
         example = _of(source, at[0], groups[at])
         if example is not None:
             return example

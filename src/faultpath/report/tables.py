@@ -6,17 +6,26 @@ from faultpath.analyses.effects import Effect
 from faultpath.analyses.record import DecisionRecord
 from faultpath.analyses.sentences import phrases, wording
 from faultpath.analyses.sentences.phrases import adjusted, not_standing, only_alone
+from faultpath.analyses.sentences.wording import capital
 from faultpath.analyses.tables import MISSING, Entry, Line, Table, line
 from faultpath.analyses.tables.markdown import block
 from faultpath.stats.estimate import Estimate
 
 _VARIANTS = ("baseline", "repair")
+_MEDIAN = "median time of successes"
 DIFFERENCE = ("difference", "interval", "won")
 SHOWN = (*_VARIANTS, *DIFFERENCE, "holm", "power", "scenes", "void", "break-even")
 ALL = (
     *(*_VARIANTS, *DIFFERENCE, "p", "mcnemar", "holm", "decided"),
     *("power", "scenes", "void", "break-even", "beta"),
 )
+_MEANS = {
+    "power": "the true difference that 8 of 10 such audits would find",
+    "scenes": "scenes in which both versions have a trial",
+    "void": "pairs of trials that count for neither version",
+    "break-even": "how often the fault must occur for neither version to be ahead",
+}
+"""Sentences on quantities that say little where they are the same under every condition."""
 _BETA = (
     " Break-even beta: the same for the beta factor, the share of the module's faults that reach "
     "all modules at once."
@@ -102,6 +111,21 @@ def by_condition(record: DecisionRecord, names: Sequence[str], title: str = "") 
     return Table(title=title, corner="Condition", columns=tuple(columns), lines=tuple(lines))
 
 
+def constant(record: DecisionRecord, names: Sequence[str]) -> dict[str, str]:
+    """Return which of the quantities in `names` are the same under every condition, each with a
+    sentence on it; none where there is nothing to say."""
+    of = [_entries(record, effect) for effect in record.effects]
+    same: dict[str, str] = {}
+    for name, label in _labels(record, names).items():
+        cells = (entries[name] for entries in of)
+        texts = {entry if isinstance(entry, str) else entry.text for entry in cells}
+        if name in _MEANS and len(of) > 1 and len(texts) == 1:
+            (text,) = texts
+            words = f"{label}, under every condition: {text} ({_MEANS[name]})."
+            same[name] = "" if text == MISSING else words
+    return same
+
+
 def by_quantity(
     record: DecisionRecord, names: Sequence[str], title: str = "", notes: Sequence[str] = ()
 ) -> Table:
@@ -181,16 +205,31 @@ def ended(record: DecisionRecord) -> Table:
         lines.append(line(condition.title))
         for role, name in zip(_VARIANTS, (question.baseline, question.repair), strict=True):
             if (cell := cells.get((condition.name, name))) is not None:
-                time = cell.median_time_s
                 counts = (str(getattr(cell, status)) for status in shown)
-                median = MISSING if time is None else wording.plain(time, 2)
-                lines.append(line(name, *counts, median, aside=role))
+                time = () if median_time(record) else (_median(cell.median_time_s),)
+                lines.append(line(name, *counts, *time, aside=role))
+    time = () if median_time(record) else (f"{_MEDIAN}, s",)
     return Table(
         title="How trials ended",
         corner="Version",
-        columns=(*(record.facts.ends.get(s, s) for s in shown), "median time of successes, s"),
+        columns=(*(record.facts.ends.get(s, s) for s in shown), *time),
         lines=tuple(lines),
     )
+
+
+def median_time(record: DecisionRecord) -> str:
+    """Say the median time of successes where all versions and conditions have the same."""
+    times = {_median(cell.median_time_s) for cell in record.cells}
+    same = len(record.cells) > 1 and len(times) == 1
+    return (
+        f"{capital(_MEDIAN)}, of each version under every condition: {min(times)} s."
+        if same
+        else ""
+    )
+
+
+def _median(time_s: float | None) -> str:
+    return MISSING if time_s is None else wording.plain(time_s, 2)
 
 
 def secondary(record: DecisionRecord) -> Table | None:

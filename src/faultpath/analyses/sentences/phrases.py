@@ -33,6 +33,35 @@ def estimand(question: Question, facts: ComparisonFacts) -> str:
     return "new scenes like these" + (", for these trained models" if facts.trained else "")
 
 
+_TESTS = {
+    "E+M (Lloyd)": "if both versions were equally good, the largest chance of a split as uneven as "
+    "this one of the scenes that one version alone wins, however many these are",
+    "E+M and score of scenes": "the larger p-value of two, of a score test on the mean over scenes "
+    "and of E+M (Lloyd) with as many scenes as tell as much",
+    "exact McNemar": "if both versions were equally good, the chance of a split as uneven as this "
+    "one of the scenes that one version alone wins",
+    "sign test": "whether each version is ahead in as many scenes as the other",
+    "t test": "whether the mean effect of trainings is 0, if they spread as a Gaussian does",
+    "bets on the mean": "bets against a mean of 0, which hold at whatever scene one stops",
+}
+"""What a test computes, by the beginning of its name."""
+
+
+def tests(record: AuditResult) -> str:
+    """Return which tests gave which p-values, with a sentence on each; empty where none did."""
+    titles = {condition.name: condition.title for condition in record.conditions}
+    by_name: dict[str, list[str]] = {}
+    for effect in record.effects:
+        title = titles.get(effect.condition, effect.condition)
+        by_name.setdefault(effect.test, []).append(f"{title} {p_value(effect.p_value)}")
+    said: list[str] = []
+    for name, values in by_name.items():
+        means = next((words for test, words in _TESTS.items() if name.startswith(test)), "")
+        what = f"{capital(name)}: {means}. " if means else f"{capital(name)}. "
+        said.append(f"{what}p, before correction: {', '.join(values)}.")
+    return " ".join(said)
+
+
 def margin(record: AuditResult) -> str:
     """Return the margin below which a sequential audit counts a difference as small."""
     return f"{record.question.margin_pp or 0.0:g} pp"
