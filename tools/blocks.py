@@ -63,6 +63,9 @@ class Picture(NamedTuple):
     name: str
     text: str
     svg: str
+    still: str = ""
+    """Of a film: the picture for readers who prefer no motion."""
+    caption: str = ""
 
 
 class Repeats(BaseModel):
