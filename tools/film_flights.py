@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 from blocks import OUTCOMES, REFERENCE, Wrong, load
+from numpy.typing import NDArray
 from pydantic import BaseModel
 from repeats import planned
 
@@ -33,8 +34,7 @@ class Flight(BaseModel):
 
     variant: str
     condition: str
-    x_cm: list[int]
-    y_cm: list[int]
+    places_cm: list[tuple[int, int]]
 
 
 class Flights(BaseModel):
@@ -46,6 +46,11 @@ class Flights(BaseModel):
     wind_cm_s: list[tuple[int, int]]
     """East and north, at each control step of the longest trial."""
 
+    def of(self, condition: str, variant: str) -> Flight:
+        """Return a variant's trial under a condition."""
+        trials = {(flight.condition, flight.variant): flight for flight in self.flights}
+        return trials[condition, variant]
+
 
 def flown(scene: str, seed: int) -> Flights:
     """Run the trials again; `Wrong` where one differs from the run."""
@@ -53,7 +58,7 @@ def flown(scene: str, seed: int) -> Flights:
     before = outcomes_at(read_outcomes(REFERENCE / RUN / OUTCOMES))
     system, study = planned(run)
     flights: list[Flight] = []
-    winds: list[list[tuple[int, int]]] = []
+    winds: dict[TrialAddress, list[tuple[int, int]]] = {}
     for row in study.rows:
         if row.condition not in SHOWN or row.seed != seed:
             continue
@@ -62,15 +67,19 @@ def flown(scene: str, seed: int) -> Flights:
         again = tuple(replace(outcome, trace=None) for outcome in block.outcomes)
         if differs := block.error or difference([before[at]], Done(again, ())):
             raise Wrong(f"{at.variant}, {at.condition}: the trial {differs}")
-        (track,) = (outcome.trace for outcome in block.outcomes)
-        x_cm, y_cm = np.rint(100 * track[:, :2]).astype(int).T.tolist()
-        flights.append(Flight(variant=at.variant, condition=at.condition, x_cm=x_cm, y_cm=y_cm))
-        (wind,) = (signal for signal in block.signals[0] if signal.name == "true_wind")
-        winds.append([(east, north) for east, north in np.rint(100 * wind.values[:, :2]).astype(int).tolist()])
-    longest = max(winds, key=len)
-    if any(wind != longest[: len(wind)] for wind in winds):
+        (track,) = (outcome.trace for outcome in block.outcomes if outcome.trace is not None)
+        (wind,) = (signal.values for signal in block.signals[0] if signal.name == "true_wind")
+        places, winds[at] = centimetres(track), centimetres(wind)
+        flights.append(Flight(variant=at.variant, condition=at.condition, places_cm=places))
+    longest = max(winds.values(), key=len)
+    if any(wind != longest[: len(wind)] for wind in winds.values()):
         raise Wrong("the trials do not have the same wind")
     return Flights(scene=scene, seed=seed, flights=flights, wind_cm_s=longest)
+
+
+def centimetres(metres: NDArray[np.float32]) -> list[tuple[int, int]]:
+    """Return the first two components of vectors, in whole centimetres."""
+    return [(east, north) for east, north, *_ in np.rint(100 * metres).astype(int).tolist()]
 
 
 def main() -> int:
