@@ -56,14 +56,16 @@ def flown(scene: str, seed: int) -> Flights:
     """Run the trials again; `Wrong` where one differs from the run."""
     run = load(RUN)
     before = outcomes_at(read_outcomes(REFERENCE / RUN / OUTCOMES))
+    if (scene, seed) not in {(at.scene, at.seed) for at in before}:
+        raise Wrong(f"{RUN} has no scene {scene} with seed {seed}: choose another one")
     system, study = planned(run)
     flights: list[Flight] = []
     winds: dict[TrialAddress, list[tuple[int, int]]] = {}
     for row in study.rows:
         if row.condition not in SHOWN or row.seed != seed:
             continue
-        block = run_block(system, BlockSpec(row.treatment, (scene,), signals=True))
         at = TrialAddress(row.variant, row.condition, seed, scene)
+        block = run_block(system, BlockSpec(row.treatment, (scene,), signals=True))
         again = tuple(replace(outcome, trace=None) for outcome in block.outcomes)
         if differs := block.error or difference([before[at]], Done(again, ())):
             raise Wrong(f"{at.variant}, {at.condition}: the trial {differs}")

@@ -6,7 +6,7 @@ from itertools import product
 from math import atan2, hypot
 
 import numpy as np
-from blocks import REFERENCE, Picture, parsed
+from blocks import REFERENCE, Picture, Wrong, parsed
 from faultpath_quadrotor.scenes.soundness import GOAL_RADIUS_M
 from film import Film
 from film_flights import FLIGHTS, RUN, SHOWN, Flights
@@ -32,6 +32,7 @@ CSS = """
 .fig .rotor { fill: var(--paper); stroke: var(--side); stroke-width: 1.6; }
 .fig .frame { stroke: var(--side); stroke-width: 2; }
 """
+REMEDY = "make it with tools/film_flights.py"
 At = Callable[[float, float], Point]
 """Pixels of a place in the room, in metres."""
 
@@ -39,7 +40,7 @@ At = Callable[[float, float], Point]
 @cache
 def film() -> Picture:
     """Return the film and its still."""
-    flights: Flights = parsed(FLIGHTS, Flights, "make it with tools/film_flights.py")
+    flights: Flights = parsed(FLIGHTS, Flights, REMEDY)
     shown = SystemShown.model_validate_json((REFERENCE / RUN / "system.json").read_bytes())
     plan, story = shown.plans[flights.scene], story_of(flights)
     scale = WIDE / (plan.high[0] - plan.low[0])
@@ -53,6 +54,8 @@ def film() -> Picture:
         with film.group(film.fading()):
             for side, (variant, trial) in zip(SIDES, story.trials(half).items(), strict=True):
                 flight = flights.of(half.condition, variant)
+                if len(flight.places_cm) != trial.steps(shown.control_dt_s) + 1:
+                    raise Wrong(f"{FLIGHTS.name} is not of {RUN}: {REMEDY}")
                 points = [at(x / 100, y / 100) for x, y in flight.places_cm]
                 times = [min(i * shown.control_dt_s, trial.time_s) for i in range(len(points))]
                 film.trail(points, times, side)

@@ -97,6 +97,20 @@ def test_a_scene_that_shows_something_else_is_refused() -> None:
         film_halves.caption(replace(film_openpilot.STORY, scene="seed/1000"))
 
 
+def test_flights_of_another_run_are_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "film_flights.json"
+    first, *others = STORED.flights
+    short = first.model_copy(update={"places_cm": first.places_cm[:-1]})
+    path.write_text(STORED.model_copy(update={"flights": [short, *others]}).model_dump_json())
+    monkeypatch.setattr(film_quadrotor, "FLIGHTS", path)
+    with pytest.raises(Wrong, match=r"make it with tools/film_flights\.py"):
+        film_quadrotor.film.__wrapped__()
+    with pytest.raises(Wrong, match="no scene decision/999 with seed 2"):
+        film_flights.flown("decision/999", 2)
+
+
 @pytest.mark.slow
 def test_the_flights_repeat() -> None:
     assert film_flights.flown(STORED.scene, STORED.seed) == STORED
