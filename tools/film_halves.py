@@ -213,7 +213,7 @@ def caption(story: Story) -> str:
     total, scenes = counts.total(), question.n_scenes
     of = f"{total:,}"
     if len(question.seeds) > 1:
-        of += f" ({scenes} scenes, {len(question.seeds)} trained models)"
+        of += f" ({scenes} scenes, {len(question.seeds)} trainings)"
     return (
         f"One scene of {scenes}, chosen because it shows what the numbers below it say. "
         f"{alike} of {of} go like this one: with the fault at one module only `{winner}` succeeds, "

@@ -83,7 +83,7 @@ def story_of(flights: Flights) -> Story:
         halves=halves,
         variants={
             "gru": "the original wind estimator",
-            "gru+dcc": "retrained with wrong mass and thrust",
+            "gru+dcc": "retrained to tolerate wrong values",
         },
         during="flying",
         ends={Status.SUCCESS: "at the goal", Status.CRASH: "crashed"},
