@@ -14,6 +14,7 @@ from pydantic import BaseModel, ValidationError
 from faultpath.analyses.map.record import MapRecord
 from faultpath.analyses.record import DecisionRecord
 from faultpath.analyses.scan.record import ScanRecord
+from faultpath.analyses.tables.escapes import html as escape
 from faultpath.api.folders import (
     MADE_FROM,
     MAP,
@@ -58,6 +59,30 @@ class Picture(NamedTuple):
     name: str
     text: str
     svg: str
+    still: str = ""
+    """What a film shows to readers who prefer no motion."""
+    caption: str = ""
+
+    @property
+    def files(self) -> dict[Path, str]:
+        """What its files hold, by their path."""
+        files = {IMAGES / self.name: self.svg, IMAGES / self._name_of_still: self.still}
+        return {path: content for path, content in files.items() if content}
+
+    @property
+    def shown(self) -> str:
+        """What a document shows of it."""
+        if not self.still:
+            return f"![{self.text}]({{images}}/{self.name})"
+        still = (
+            f'media="(prefers-reduced-motion: reduce)" srcset="{{images}}/{self._name_of_still}"'
+        )
+        image = f'<img alt="{escape(self.text)}" src="{{images}}/{self.name}">'
+        return f"<picture>\n<source {still}>\n{image}\n</picture>\n\n*{self.caption}*"
+
+    @property
+    def _name_of_still(self) -> str:
+        return self.name.replace(".svg", "-still.svg")
 
 
 class Repeats(BaseModel):

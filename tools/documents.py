@@ -20,6 +20,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 import comparison
+import film_openpilot
+import film_quadrotor
 import paper_blocks
 import run_blocks
 import studies
@@ -67,6 +69,8 @@ PICTURES: Mapping[str, Callable[..., Picture]] = {
     "map:picture": run_blocks.map_picture_of,
     "scan:picture": run_blocks.scan_picture_of,
     "paper:picture": paper_blocks.picture,
+    "film:quadrotor": film_quadrotor.film,
+    "film:openpilot": film_openpilot.film,
 }
 """Functions that return the picture that a block shows."""
 
@@ -98,11 +102,7 @@ def split(name: str) -> tuple[str, list[str]]:
 def fill(name: str, document: Path) -> str:
     """Return the text of the block `name` of a document."""
     kind, words = split(name)
-    if kind in PICTURES:
-        picture = PICTURES[kind](*words)
-        text = f"![{picture.text}]({{images}}/{picture.name})"
-    else:
-        text = BLOCKS[kind](*words)
+    text = PICTURES[kind](*words).shown if kind in PICTURES else BLOCKS[kind](*words)
     folders = {"{docs}": ROOT / "docs", "{images}": IMAGES, "{reference}": REFERENCE}
     for word, folder in folders.items():
         text = text.replace(word, Path(os.path.relpath(folder, document.parent)).as_posix())
@@ -137,8 +137,8 @@ def photographs() -> list[tuple[str, str]]:
 def generated() -> Mapping[Path, str]:
     """Return every file that follows from numbers, by its path."""
     files = {path: filled(path.read_text("utf-8"), path) for path in documents()}
-    drawn = (PICTURES[kind](*words) for kind, words in blocks_shown() if kind in PICTURES)
-    files |= {IMAGES / picture.name: picture.svg for picture in drawn}
+    for picture in (PICTURES[kind](*words) for kind, words in blocks_shown() if kind in PICTURES):
+        files |= picture.files
     files[paper_blocks.FACTS] = BLOCKS["page:facts"]() + "\n"
     return files | paper_blocks.elsewhere()
 

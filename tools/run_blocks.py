@@ -23,7 +23,6 @@ from faultpath.report.terminal import decision
 MAP_PICTURES = {"map": map_picture, "correlation": correlation_picture}
 PARTS: dict[str, tuple[str, str]] = {
     "interface": ("Who gets the fault", "#interface > *"),
-    "readers": ("Who gets the fault", ".forks .panels"),
     "effects": ("Effects of the repair", "#effects"),
     "flights": ("Some trials", "#flights > *"),
 }

@@ -126,14 +126,14 @@ def linked(app: Sphinx, tree: nodes.document) -> None:
             node.replace_self(nodes.reference("", "", *node.children, refuri=uri, internal=True))
 
 
-def with_reports(app: Sphinx, error: Exception | None) -> None:
-    """Put the pages of reference runs beside the site's own."""
-    if error is None:
-        for name in PAGES:
-            for page in REFERENCE.rglob(name):
-                target = Path(app.outdir) / page.relative_to(DOCS)
-                target.parent.mkdir(parents=True, exist_ok=True)
-                shutil.copyfile(page, target)
+def with_files(app: Sphinx, error: Exception | None) -> None:
+    """Put the pages of reference runs and the films, which pages show by HTML, beside the site's
+    own."""
+    pages = (page for name in PAGES for page in REFERENCE.rglob(name))
+    for file in (*pages, *(DOCS / "images").glob("film-*.svg")) if error is None else ():
+        target = Path(app.outdir) / file.relative_to(DOCS)
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(file, target)
 
 
 CODE = re.compile(r"(?<!`)`([^`]+)`(?!`)")
@@ -170,7 +170,7 @@ def setup(app: Sphinx) -> dict[str, bool]:
     app.add_source_parser(NotebookParser)
     app.connect("source-read", with_notes)
     app.connect("doctree-read", linked)
-    app.connect("build-finished", with_reports)
+    app.connect("build-finished", with_files)
     app.connect("autodoc-process-docstring", plain, priority=400)  # before napoleon
     app.connect("autodoc-process-signature", public)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
