@@ -111,13 +111,13 @@ def papers(part: StatementPart) -> str:
 
 def farthest(claim: ClaimVerdict) -> Size:
     """Return the size that is farthest from the paper's figure, of the parts that have one."""
-    compared = [part.size for part in claim.parts if part.size in SIZES]
-    return max(compared, key=SIZES.index, default="not comparable")
+    compared: list[Size] = [part.size for part in claim.parts if part.size in SIZES]
+    return max(compared, key=SIZES.index) if compared else "not comparable"
 
 
 def size(claim: ClaimVerdict) -> str:
     """Return how our figures stand to the paper's; nothing where the paper prints none."""
-    sizes = [part.size for part in claim.parts if part.paper is not None]
+    sizes: list[Size] = [part.size for part in claim.parts if part.paper is not None]
     if not sizes:
         return ""
     return counts(sizes) or BESIDE["not comparable"]
@@ -137,8 +137,8 @@ def counts(sizes: Sequence[Size]) -> str:
 def sizes(ledger: Ledger) -> str:
     """Return in one sentence how our figures stand to those that the paper prints."""
     parts = [part for claim in ledger.claims for part in claim.parts]
-    printed = [part.size for part in parts if part.paper is not None]
-    compared = [label for label in printed if label in SIZES]
+    printed: list[Size] = [part.size for part in parts if part.paper is not None]
+    compared: list[Size] = [label for label in printed if label in SIZES]
     if not printed:
         return ""
     figures = wording.counted(len(printed), "figure")
