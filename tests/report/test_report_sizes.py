@@ -25,15 +25,15 @@ SAME, OTHER = "right sign, other size", "other sign"
         ((), ""),
         (("",), ""),
         (("", "not comparable"), "cannot be compared"),
-        (("compatible", ""), "1 agrees"),
-        (("compatible", "compatible"), "2 agree"),
+        (("compatible", ""), "1 figure agrees"),
+        (("compatible", "compatible"), "2 figures agree"),
         (
             (SAME, "compatible", SAME, "not comparable"),
-            "1 agrees, 2 have the same direction but a different size",
+            "1 figure agrees, 2 have the same direction but a different size",
         ),
         (
             (OTHER, "other size", "compatible"),
-            "1 agrees, 1 has a different size, 1 points in the opposite direction",
+            "1 figure agrees, 1 has a different size, 1 points in the opposite direction",
         ),
     ],
 )
@@ -49,6 +49,6 @@ def test_sizes_are_counted_in_a_sentence() -> None:
     found = ledger().model_copy(update={"claims": tuple(sized(*each) for each in sizes)})
     assert words.sizes(found) == (
         "The paper prints 5 figures for these claims, of which 4 can be compared with ours: "
-        "2 agree, 1 has the same direction but a different size, 1 points in the opposite "
+        "2 figures agree, 1 has the same direction but a different size, 1 points in the opposite "
         "direction."
     )

@@ -124,13 +124,13 @@ def size(claim: ClaimVerdict) -> str:
 
 
 def counts(sizes: Sequence[Size]) -> str:
-    """Return `2 agree, 1 has a different size`; nothing where none can be compared."""
+    """Return `2 figures agree, 1 has a different size`; nothing where none can be compared."""
     compared = [size for size in sizes if size in SIZES]
-    clauses = [
-        f"{count} {_COUNTED_SIZES[size][count > 1]}"
-        for size in SIZES
-        if (count := compared.count(size))
-    ]
+    clauses: list[str] = []
+    for size in SIZES:
+        if count := compared.count(size):
+            number = str(count) if clauses else wording.counted(count, "figure")
+            clauses.append(f"{number} {_COUNTED_SIZES[size][count > 1]}")
     return ", ".join(clauses)
 
 
