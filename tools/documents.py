@@ -74,6 +74,12 @@ PICTURES: Mapping[str, Callable[..., Picture]] = {
 }
 """Functions that return the picture that a block shows."""
 
+PAGES: Sequence[Callable[[], Mapping[Path, str]]] = (
+    paper_blocks.elsewhere,
+    lambda: {paper_blocks.FACTS: BLOCKS["page:facts"]() + "\n"},
+)
+"""Functions that return other files that follow from numbers, by their path."""
+
 BLOCK = re.compile(
     r"^<!-- begin:(?P<name>\S+) -->\n(?P<body>.*?)^<!-- end:(?P=name) -->$",
     flags=re.MULTILINE | re.DOTALL,
@@ -137,10 +143,12 @@ def photographs() -> list[tuple[str, str]]:
 def generated() -> Mapping[Path, str]:
     """Return every file that follows from numbers, by its path."""
     files = {path: filled(path.read_text("utf-8"), path) for path in documents()}
-    for picture in (PICTURES[kind](*words) for kind, words in blocks_shown() if kind in PICTURES):
+    drawn = (PICTURES[kind](*names) for kind, names in blocks_shown() if kind in PICTURES)
+    for picture in drawn:
         files |= picture.files
-    files[paper_blocks.FACTS] = BLOCKS["page:facts"]() + "\n"
-    return files | paper_blocks.elsewhere()
+    for page in PAGES:
+        files |= page()
+    return files
 
 
 def leftover() -> list[Path]:

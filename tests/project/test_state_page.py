@@ -3,6 +3,7 @@
 import blocks
 import numpy as np
 import pytest
+import state_study
 from documents import BLOCKS
 from state_design import Audit, Design
 from studies import sensor_sentences, sensors
@@ -70,3 +71,9 @@ def test_the_design_names_what_it_flies():
         "dob-inertial": "eskf-no-bias",
         "eskf/gru": "eskf",
     }
+
+
+def test_a_study_without_workers_is_refused_in_a_sentence(capsys):
+    with pytest.raises(SystemExit, match="2"):
+        state_study.main(["--workers", "0"])
+    assert "--workers 0: give at least one" in capsys.readouterr().err
