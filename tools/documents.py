@@ -25,6 +25,7 @@ import latent_blocks
 import model_blocks
 import paper_blocks
 import run_blocks
+import schema_files
 import state_blocks
 from blocks import IMAGES, REFERENCE, ROOT, RUNS, Picture, Wrong, copied, kind_of, load
 from pictures import digest, made_from, make_images, name_of
@@ -89,6 +90,7 @@ PICTURES: Mapping[str, Callable[..., Picture]] = {
 PAGES: Sequence[Callable[[], Mapping[Path, str]]] = (
     paper_blocks.elsewhere,
     paper_blocks.fact_page,
+    schema_files.files,
 )
 """Functions that return other files that follow from numbers, by their path."""
 
