@@ -19,6 +19,7 @@ import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
+import api_blocks
 import carry_blocks
 import found_blocks
 import latent_blocks
@@ -50,6 +51,7 @@ BLOCKS: Mapping[str, Callable[..., str]] = {
     "scan:command": run_blocks.command,
     "scan:audits": run_blocks.scan_commands,
     "code": run_blocks.code,
+    "api": api_blocks.signatures,
     "template": run_blocks.template,
     "found": found_blocks.table,
     "audits": found_blocks.audits,
