@@ -29,7 +29,7 @@ _NAMESPACES: dict[type, Any] = {}
 
 def namespace(array: Array) -> Any:
     """Return the array-API namespace of `array`, remembered by type (a look-up costs 2 us)."""
-    kind: type[Any] = type(array)
+    kind = cast("type[Any]", type(array))
     if kind not in _NAMESPACES:
         _NAMESPACES[kind] = _COMPAT.array_namespace(array)
     return _NAMESPACES[kind]
@@ -56,11 +56,11 @@ def read_only(array: Array) -> Array:
     """
     if not isinstance(array, np.ndarray):
         return array
-    host: HostArray = array
+    host = cast(HostArray, array)
     if not host.flags.writeable:
         return host
     view = host.view()
-    view.flags.writeable = False
+    view.setflags(write=False)
     return view
 
 
