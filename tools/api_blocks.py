@@ -4,8 +4,6 @@ import inspect
 import re
 from importlib import import_module
 
-from blocks import fence
-
 _PATH = re.compile(r"\b(?:[a-z_]\w*\.)+(?=\w)")
 _NOTES = re.compile(r"Annotated\[(\w+),[^\]]*\]")
 
@@ -14,7 +12,8 @@ def signatures(module: str, *names: str) -> str:
     """Return names of a module, by default all of `__all__`, each with what it takes and does."""
     home = import_module(module)
     shown = names or sorted(name for name in home.__all__ if not name.startswith("__"))
-    return fence("text", "\n".join(_line(name, getattr(home, name)) for name in shown))
+    lines = "\n".join(_line(name, getattr(home, name)) for name in shown)
+    return f"```text\n{lines}\n```"
 
 
 def _line(name: str, thing: object) -> str:
