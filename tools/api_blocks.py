@@ -25,7 +25,7 @@ def _line(name: str, thing: object) -> str:
         taken = ""
     if inspect.isclass(thing):
         taken = taken.removesuffix(" -> None")
-        if "_" in re.findall(r"[(\s](_)\w+:", taken):  # only faultpath makes one
+        if re.search(r"[(\s]_\w+:", taken):  # only faultpath makes one
             taken = ""
     taken = _NOTES.sub(r"\1", _PATH.sub("", taken))
     return f"{name}{taken}\n    {first}"
