@@ -19,11 +19,13 @@ import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
+import api_blocks
 import comparison
 import film_openpilot
 import film_quadrotor
 import paper_blocks
 import run_blocks
+import schema_files
 import studies
 from blocks import IMAGES, REFERENCE, ROOT, RUNS, Picture, Wrong, copied, figures_of, kind_of, load
 from faultpath_paper import central, facts
@@ -57,6 +59,7 @@ FILTERS = {"load": load, "between": comparison.between, "success": comparison.su
 """What templates use, beside the filters of `rendering`."""
 BLOCKS: Mapping[str, Callable[..., str]] = {
     **macros(NAMES, FILTERS),
+    "api": api_blocks.signatures,
     "performance:machine": performance.machine,
     "performance:rows": performance.all_rows,
     "performance:elsewhere": performance.elsewhere,
@@ -77,6 +80,7 @@ PICTURES: Mapping[str, Callable[..., Picture]] = {
 PAGES: Sequence[Callable[[], Mapping[Path, str]]] = (
     paper_blocks.elsewhere,
     lambda: {paper_blocks.FACTS: BLOCKS["page:facts"]() + "\n"},
+    schema_files.files,
 )
 """Functions that return other files that follow from numbers, by their path."""
 

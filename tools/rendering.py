@@ -63,6 +63,7 @@ def fence(body: str, info: str = "text", *more: str) -> str:
 FILTERS: Mapping[str, Callable[..., object]] = {
     "at": lambda key, mapping: mapping[key],
     "counted": wording.counted,
+    "counted_in": lambda word, words: words.count(word) or "",
     "effect": effect,
     "escape": escape,
     "fence": fence,

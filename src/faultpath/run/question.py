@@ -260,7 +260,11 @@ class ScanQuestion(Request):
     repair: str = Field(
         default="", description="Another variant, to scan with the same errors beside it."
     )
-    fault: Annotated[tuple[FaultText, ...], BeforeValidator(several), Flag(several=True)] = Field(
+    fault: Annotated[
+        tuple[FaultText, ...],
+        BeforeValidator(several, json_schema_input_type=FaultText | tuple[FaultText, ...]),
+        Flag(several=True),
+    ] = Field(
         default=(),
         description="Size of a source's error in place of the declared one, for both signs: "
         "`gain:scale=1.2`, `gain:offset=0.1@observer`, `calibration=0.1`.",
