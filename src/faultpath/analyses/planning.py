@@ -30,9 +30,9 @@ from faultpath.run.question import FEWEST_TRAININGS, AuditQuestion, RepairQuesti
 from faultpath.system.declared import Library, Variant
 from faultpath.system.system import System
 
-LOOK = 5
-"""Scenes from one look to the next of a sequential audit, where the system runs as many at once:
-fewer save few trials and cost much for systems that run their scenes together."""
+_BATCH = 5
+"""Scenes from one analysis to the next of a sequential audit, where the system runs as many at
+once: fewer save few trials and cost much for systems that run their scenes together."""
 _ORDER_SEED = 0
 """One order for each library, so that nobody can choose among several."""
 
@@ -126,12 +126,12 @@ def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library
         library=library.name,
         scenes=chosen,
         rows=tuple(rows),
-        look=min(LOOK, system.block_size or LOOK) if sequential else 0,
+        scenes_per_analysis=min(_BATCH, system.block_size or _BATCH) if sequential else 0,
     )
     order = SceneOrder(
         scenes=chosen,
         seed=_ORDER_SEED,
-        per_analysis=study.look,
+        per_analysis=study.scenes_per_analysis,
         trials=len(study.treatments()),
     )
     facts = ComparisonFacts(
