@@ -144,11 +144,6 @@ def read_yaml(data: bytes) -> Document:
         raise Misread(f"is not plain YAML ({problem}); correct it") from None
 
 
-def yaml_text(data: Any, **style: Any) -> str:
-    """Return YAML that `read_yaml` reads as the same, and other readers too."""
-    return cast(Any, yaml).dump(data, Dumper=_Dumper, sort_keys=False, allow_unicode=True, **style)
-
-
 class _Loader(_Safe):
     """Knows text, numbers, truth values and nothing else; each key is text, and there once."""
 
@@ -179,10 +174,6 @@ for _kind in ("int", "float"):
     _Loader.add_constructor(_TYPE + _kind, _Loader.number)
 
 
-class _Dumper(yaml.SafeDumper):
-    """Quotes what either reader would take for something else than text."""
-
-
 _INTEGER = re.compile(r"[-+]?(?:0|[1-9][0-9]*)$")
 _NUMBER = re.compile(
     r"[-+]?(?:[0-9]+\.[0-9]*|\.[0-9]+|[0-9]+(?=[eE]))(?:[eE][-+]?[0-9]+)?$"
@@ -192,14 +183,13 @@ _TRUTH = re.compile(
     r"(?:yes|Yes|YES|no|No|NO|true|True|TRUE|false|False|FALSE|on|On|ON|off|Off|OFF)$"
 )
 _NOTHING = re.compile(r"(?:~|null|Null|NULL|)$")
-for _class in (_Loader, _Dumper):
-    for _name, _pattern, _first in (
-        ("null", _NOTHING, ["~", "n", "N", ""]),
-        ("bool", _TRUTH, list("yYnNtTfFoO")),
-        ("int", _INTEGER, list("-+0123456789")),
-        ("float", _NUMBER, list("-+.0123456789")),
-    ):
-        cast(Any, _class).add_implicit_resolver(_TYPE + _name, _pattern, _first)
+for _name, _pattern, _first in (
+    ("null", _NOTHING, ["~", "n", "N", ""]),
+    ("bool", _TRUTH, list("yYnNtTfFoO")),
+    ("int", _INTEGER, list("-+0123456789")),
+    ("float", _NUMBER, list("-+.0123456789")),
+):
+    _Loader.add_implicit_resolver(_TYPE + _name, _pattern, _first)
 
 
 def _check_events(events: Iterator[Any]) -> None:

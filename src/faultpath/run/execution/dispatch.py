@@ -136,7 +136,8 @@ def dispatch(
 
     `work`, a function of a module, gets the system and the task. `handle_reply` gets what it
     returned, `Wrong` for an error that it raised, or `Died` where a worker was lost over the task
-    twice or stopped at the time limit: as asked, as the system says, or an hour."""
+    twice or stopped at the time limit: as asked, as the system says, or an hour.
+    """
     if limit_s is not None and not (math.isfinite(limit_s) and limit_s > 0):
         raise UserError(f"the time limit is {limit_s:g} s: give a number of seconds above 0")
     limit_s = limit_s or built.system.time_limit_s or LONGEST_S
