@@ -146,11 +146,13 @@ def _effect(
     void, missing = int(pairs.void.sum()), None
     if condition in family.fills:
         against, favour = family.fills[condition]
-        ours, theirs = (int(failed.sum()) for failed in pairs.ended(Status.FAILED))
+        repair_failed, baseline_failed = (
+            int(failed.sum()) for failed in pairs.ended(Status.FAILED)
+        )
         missing = Missing(
             void=void,
-            repair=ours,
-            baseline=theirs,
+            repair=repair_failed,
+            baseline=baseline_failed,
             against_pp=against.value,
             favour_pp=favour.value,
             uneven=condition in family.uneven,

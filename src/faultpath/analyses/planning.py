@@ -110,14 +110,17 @@ def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library
     sequential = request.stop_when is not None
     chosen = scenes_of(library, request.scenes, in_order=not sequential)
     faults = system.fault(request.fault)
-    faults_of = faults_by_condition(faults, variants)
+    by_condition = faults_by_condition(faults, variants)
     conditions = [
-        _condition(name, of[request.repair], of[request.baseline]) for name, of in faults_of.items()
+        _condition(name, by_variant[request.repair], by_variant[request.baseline])
+        for name, by_variant in by_condition.items()
     ]
     # Where the fault cannot reach a variant, that is the treatment under correct inputs: it runs
     # once.
     rows = [
-        row for condition, of in faults_of.items() for row in rows_of(condition, of, request.seeds)
+        row
+        for condition, by_variant in by_condition.items()
+        for row in rows_of(condition, by_variant, request.seeds)
     ]
     _check(system, request)
     study = Study(
@@ -194,12 +197,12 @@ def rows_of(
 def _condition(name: str, repair: Sequence[Fault], baseline: Sequence[Fault]) -> Condition:
     """Return a condition of the fault, with what it reaches in each variant."""
     titles = {CORRECT: "Correct inputs", SHARED: "Shared fault"}
-    ours, theirs = (
+    readers, baseline_readers = (
         tuple(dict.fromkeys(reader for fault in faults for reader in fault.readers))
         for faults in (repair, baseline)
     )
     title = titles.get(name, f"{name.replace('_', ' ').capitalize()} only")
-    return Condition(name=name, title=title, readers=ours, baseline_readers=theirs)
+    return Condition(name=name, title=title, readers=readers, baseline_readers=baseline_readers)
 
 
 def _check(system: System, question: AuditQuestion) -> None:

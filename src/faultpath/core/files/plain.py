@@ -160,7 +160,7 @@ class _Loader(_Safe):
                 raise Misread(f"key '{key.value}' appears twice; drop one", line)
             seen.add(key.value)
             key.tag = _TYPE + "str"
-        return super().construct_mapping(node, deep)
+        return _Safe.construct_mapping(self, node, deep)
 
     def number(self, node: ScalarNode) -> float:
         """Return a number; `Misread` for one out of range."""
