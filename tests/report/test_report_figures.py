@@ -64,8 +64,10 @@ def _panel(
     )
     curve = ((0.0, -10.0, -20.0, 0.0), (1.0, 10.0, 0.0, 20.0))
     ahead = tuple(Ahead(sign=sign, where="many") for sign in signs)
-    condition = ConditionBreakEven(condition="shared", result=result, curve=curve, ahead=ahead)
-    return frequency_panels(record.model_copy(update={"break_even": (condition,)}))[0][0]
+    condition = ConditionBreakEven(
+        condition="shared", over="frequency", result=result, curve=curve, ahead=ahead
+    )
+    return frequency_panels(record.model_copy(update={"break_evens": (condition,)}))[0][0]
 
 
 def test_the_curve_is_coloured_where_a_variant_is_decided(one_seed: ReportInput) -> None:
