@@ -31,18 +31,18 @@ from faultpath.run.store.tables import decode_outcomes, decode_traces, encode_tr
 from faultpath.system import library_of
 
 
-def conclude_all(tell: Callable[[str], None]) -> None:
+def conclude_all(say: Callable[[str], None]) -> None:
     """Decide every reference run anew and write its record, table and page; then the paper's."""
     for folder in sorted(path.parent for path in REFERENCE.glob(f"*/{RECORD}")):
         before = parsed(folder / RECORD, DecisionRecord)
         record = audit(folder)
-        tell(f"{folder.name}: {before.headline}\n    now: {record.headline}")
+        say(f"{folder.name}: {before.headline}\n    now: {record.headline}")
     for folder in sorted(path.parent for path in REFERENCE.glob(f"*/{MAP}")):
-        tell(f"{folder.name}: {reversal_map(folder).headline}")
+        say(f"{folder.name}: {reversal_map(folder).headline}")
     for folder in sorted(path.parent for path in REFERENCE.glob(f"*/{SCAN}")):
-        tell(f"{folder.name}: {scan(folder).headline}")
+        say(f"{folder.name}: {scan(folder).headline}")
     for line in paper(RUN, PLACE):
-        tell(f"the paper: {line}")
+        say(f"the paper: {line}")
 
 
 def audit(folder: Path) -> DecisionRecord:

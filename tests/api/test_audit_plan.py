@@ -5,7 +5,6 @@ from audit_toys import INTERFACE, Paper, planned
 
 from faultpath.analyses.planning import Audit
 from faultpath.core.errors import UserError
-from faultpath.core.files.plain import yaml_text
 from faultpath.interface import read_interface
 from faultpath.run.question import (
     AuditQuestion,
@@ -118,9 +117,7 @@ def test_scenes_that_the_library_does_not_have(count):
 
 
 def test_a_module_may_not_be_called_like_a_condition(monkeypatch):
-    document = yaml_text(INTERFACE.model_dump(mode="json")).replace(
-        "observer.model", "shared.model"
-    )
+    document = INTERFACE.model_dump_json(indent=1).replace("observer.model", "shared.model")
     monkeypatch.setattr(Paper, "interface", read_interface(document))
     reads = frozenset({"planner.cost", "shared.model"})
     monkeypatch.setitem(Paper.variants, "observed", Variant("observed", "", reads))

@@ -130,6 +130,7 @@ FORGED: dict[str, tuple[str, Change]] = {
     "no cells": ("versions", record(lambda c: c.update(cells=[]))),
     "another count": ("count", record(lambda c: c["cells"][0].update(success=77))),
     "another library": ("libraries", record(lambda c: c["facts"].update(library_hash="x"))),
+    "a question that is none": ("question", record(lambda c: c.update(question=5))),
     "another metric": ("'speed'", record(lambda c: c["question"].update(metric="speed"))),
     "a tap that is not there": (
         "injection points",

@@ -14,7 +14,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import locked
 from faultpath.core.files.opening import contents
 from faultpath.core.files.parquet import Unreadable
-from faultpath.core.files.plain import Misread, read_json, read_yaml, yaml_text
+from faultpath.core.files.plain import Misread, read_json, read_yaml
 from faultpath.interface import read_interface
 from faultpath.learning.model_card import FitRecord, read_card
 from faultpath.run.store.folder import RunFolder, read_outcomes, read_regular
@@ -169,11 +169,3 @@ def test_what_is_not_plainly_a_number_is_text() -> None:
 def test_a_byte_order_mark_is_no_part_of_a_text() -> None:
     for read in (read_json, lambda data: read_yaml(data).data):
         assert read(b"\xef\xbb\xbf{}") == {}
-
-
-def test_what_is_written_reads_back() -> None:
-    data = {
-        "texts": ["1e-3", "0x10", "yes", "~", "", "07", "1.5", "a: b", "\u2028"],
-        "n": [1e-7, 2],
-    }
-    assert read_yaml(yaml_text(data).encode()).data == data

@@ -1,5 +1,6 @@
 """A profile of the toy's audit: what a fault's text, an effect and a question pass on their way."""
 
+import ast
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
@@ -149,3 +150,14 @@ def test_an_effect_passes_eight_classes_and_a_question_four(tmp_path: Path) -> N
     questions = profiled(question, tmp_path / "question", *rooms, **asked)
     assert {AuditCall, AuditQuestion} <= questions.classes
     assert len(questions.classes) <= 4, questions.classes
+
+
+def test_a_class_has_at_most_fifteen_fields() -> None:
+    sizes: dict[str, int] = {}
+    for file in Path(SOURCE).rglob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text("utf-8"))):
+            if isinstance(node, ast.ClassDef):
+                fields = [part for part in node.body if isinstance(part, ast.AnnAssign)]
+                fields = [part for part in fields if "ClassVar" not in ast.unparse(part.annotation)]
+                sizes[f"{file.name}: {node.name}"] = len(fields)
+    assert not {name: size for name, size in sizes.items() if size > 15}

@@ -14,8 +14,10 @@ from faultpath.run.work.executor import Progress
 ORDER = ("s07", "s02", "s09", "s00", "s05", "s01", "s08", "s03", "s06", "s04")
 
 
-def sequential(scenes: tuple[str, ...] = ORDER, look: int = 2, **options: str) -> Study:
-    return study(scenes, **options).model_copy(update={"look": look, "rows": rows()[::3]})
+def sequential(scenes: tuple[str, ...] = ORDER, batch: int = 2, **options: str) -> Study:
+    return study(scenes, **options).model_copy(
+        update={"scenes_per_analysis": batch, "rows": rows()[::3]}
+    )
 
 
 def seen(table: Trials) -> set[str]:
@@ -40,7 +42,7 @@ def stopped(tmp_path_factory: pytest.TempPathFactory) -> tuple[RunResult, Path]:
 def test_it_holds_the_first_scenes_of_its_order_and_no_others(stopped, tmp_path):
     result, _ = stopped
     assert seen(result.trials) == set(ORDER[:6])
-    plain = run_study(sequential(tuple(sorted(ORDER[:6])), look=0), tmp_path, workers=0)
+    plain = run_study(sequential(tuple(sorted(ORDER[:6])), batch=0), tmp_path, workers=0)
     assert result.outcomes_sha256 == plain.outcomes_sha256
     assert [row.taps for row in result.deliveries.rows] == [r.taps for r in plain.deliveries.rows]
 
@@ -52,7 +54,7 @@ def test_every_look_is_taken_once_and_holds_all_scenes_before_it(tmp_path):
         looks.append(seen(table))
         return False
 
-    result = run_study(sequential(look=4), tmp_path, workers=2, stop=stop)
+    result = run_study(sequential(batch=4), tmp_path, workers=2, stop=stop)
     assert looks == [set(ORDER[:4]), set(ORDER[:8]), set(ORDER)]
     assert seen(result.trials) == set(SCENES)
 
@@ -101,5 +103,5 @@ def test_a_failed_trial_is_tried_again_before_its_look_is_taken(tmp_path):
 
 def test_a_folder_is_not_both_of_a_fixed_number_and_sequential(stopped):
     _, folder = stopped
-    with pytest.raises(UserError, match="number of scenes from look to look"):
-        run_study(sequential(look=0), folder, workers=0)
+    with pytest.raises(UserError, match="number of scenes from analysis to analysis"):
+        run_study(sequential(batch=0), folder, workers=0)

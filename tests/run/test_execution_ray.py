@@ -22,7 +22,7 @@ from faultpath.core.errors import Notice, UserError
 from faultpath.run import SystemSpec
 from faultpath.run.execution.runner import run_study
 from faultpath.run.work import ray_cluster
-from faultpath.run.work.executor import Failed, Lost, Returned, elsewhere, tell
+from faultpath.run.work.executor import Failed, Lost, Returned, elsewhere, send_message
 from faultpath.run.work.ray_cluster import RayWorkers
 
 UNRULY = Path(__file__).with_name("test_execution_limits.py")
@@ -128,7 +128,7 @@ def test_workers_that_ray_stops_for_want_of_memory_are_waited_for(head, monkeypa
 def test_an_actor_is_a_worker_like_any_other(head):
     with RayWorkers(head.address, 1) as hands:
         heard = []
-        assert end_of(hands, partial(tell, "news"), heard.append) == Returned(None)
+        assert end_of(hands, partial(send_message, "news"), heard.append) == Returned(None)
         assert heard == ["news"]
         first = end_of(hands, os.getpid)
         assert end_of(hands, os.getpid) == first, "a number stands for a memory that stays"

@@ -34,7 +34,7 @@ def test_what_a_call_tells_is_heard_before_its_end(workers):
     with local(workers) as executor:
         assert end_of(executor, partial(calls.count, 3), heard.append) == Returned(3)
         assert heard == [0, 1, 2]
-    calls.tell("nobody")
+    calls.send_message("nobody")
 
 
 @BOTH

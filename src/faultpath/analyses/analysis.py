@@ -25,7 +25,7 @@ class Round:
     notice: str = ""
     """Sentence to be shown before the round."""
     stop: Stop | None = None
-    """Asked at each look of a sequential study."""
+    """Asked at each analysis of a sequential study."""
 
 
 Rounds: TypeAlias = Generator[Round, Trials, Items]

@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from faultpath.analyses.compared import ComparedTrials
+from faultpath.analyses.compared import PairedTrials
 from faultpath.analyses.contrasts import change_name, default_primary, effect_name
 from faultpath.analyses.descriptive import cells_of, percent, secondary, untested_conditions
 from faultpath.analyses.effects import Change, Effect, Missing
 from faultpath.analyses.facts import ComparisonFacts, Question
-from faultpath.analyses.family import Family, family_of
+from faultpath.analyses.family import TestedContrasts, family_of
 from faultpath.analyses.model import (
     AS_RUN,
     CORRECT,
@@ -132,8 +132,8 @@ def primary_condition(named: str, conditions: Sequence[Condition]) -> str:
 def _effect(
     facts: ComparisonFacts,
     condition: str,
-    comparison: ComparedTrials,
-    family: Family,
+    comparison: PairedTrials,
+    family: TestedContrasts,
     models: bool,
 ) -> Effect:
     repair, baseline = comparison.success[condition]
@@ -146,11 +146,13 @@ def _effect(
     void, missing = int(pairs.void.sum()), None
     if condition in family.fills:
         against, favour = family.fills[condition]
-        ours, theirs = (int(failed.sum()) for failed in pairs.ended(Status.FAILED))
+        repair_failed, baseline_failed = (
+            int(failed.sum()) for failed in pairs.ended(Status.FAILED)
+        )
         missing = Missing(
             void=void,
-            repair=ours,
-            baseline=theirs,
+            repair=repair_failed,
+            baseline=baseline_failed,
             against_pp=against.value,
             favour_pp=favour.value,
             uneven=condition in family.uneven,
@@ -175,7 +177,7 @@ def _effect(
     )
 
 
-def _change(condition: str, family: Family) -> Change:
+def _change(condition: str, family: TestedContrasts) -> Change:
     contrast = family.changes[condition]
     return Change(
         isolated=condition,

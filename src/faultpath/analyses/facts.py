@@ -18,9 +18,11 @@ from faultpath.system.system import System
 _Question = TypeVar("_Question", bound=Request)
 
 
-def _verb(question: Mapping[str, object] | Request) -> str:
-    named = "cluster" in question if isinstance(question, Mapping) else hasattr(question, "cluster")
-    return "judge" if named else "audit"
+def _verb(question: Any) -> str:
+    judged = isinstance(question, JudgeQuestion)
+    if isinstance(question, Mapping):
+        judged = "cluster" in question
+    return "judge" if judged else "audit"
 
 
 Question: TypeAlias = Annotated[

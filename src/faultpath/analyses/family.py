@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from faultpath.analyses.compared import ComparedTrials, Outcomes, compared
+from faultpath.analyses.compared import Outcomes, PairedTrials, compared
 from faultpath.analyses.contrasts import (
     Measure,
     alpha_shares,
@@ -36,7 +36,7 @@ from faultpath.stats.power import fewest_scenes
 
 
 @dataclass(frozen=True)
-class Family:
+class TestedContrasts:
     """Every contrast of an audit with its decision."""
 
     effects: Mapping[str, Contrast]
@@ -58,7 +58,7 @@ class Family:
     """By condition that is unsettled: how many failed trials of the repair and of the baseline have
     to run to settle it, if they come out as the others did."""
 
-    def without_claims(self) -> "Family":
+    def without_claims(self) -> "TestedContrasts":
         """Return the family of trials on which nothing can rest: no contrast is decided."""
 
         def undecided(contrasts: Mapping[str, Contrast]) -> dict[str, Contrast]:
@@ -80,7 +80,7 @@ def family_of(
     conditions: Sequence[Condition],
     trials: Trials,
     untested: Sequence[str],
-) -> tuple[ComparedTrials, Family]:
+) -> tuple[PairedTrials, TestedContrasts]:
     """Return the trials of an audit that are compared, and what is decided of them.
 
     `UserError` when no pair is left, and where newly trained models are asked for and too few
@@ -116,7 +116,7 @@ def decide_conditions(
     untested: Collection[str] = (),
     alpha: float = ALPHA,
     shares: Mapping[str, float] | None = None,
-) -> Family:
+) -> TestedContrasts:
     """Return what is decided of all conditions, from successes `[scenes, seeds]` alone, not a
     number where a trial has no outcome.
 
@@ -174,7 +174,7 @@ def decide_conditions(
     needed = fewest_scenes(alpha * max(weights.values()) / ordered_sum(weights.values()))
     if shares is not None:
         needed = betting.fewest_scenes(alpha * max(shares.values()))
-    return Family(
+    return TestedContrasts(
         effects=effects,
         changes=changes,
         turns={

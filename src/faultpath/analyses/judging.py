@@ -54,25 +54,25 @@ def pair_results(rows: Sequence[Received], request: JudgeQuestion) -> PairedResu
     if request.cluster == "task" and not all(row.task for row in rows):
         raise UserError("not every trial names its task: give --column task=NAME.")
     received = _by_address(rows, names, request)
-    conditions = sorted(set(names.values()), key=lambda name: (_FIRST.get(name, 1), name))
-    _check_paired(received, conditions, request)
+    ordered = sorted(set(names.values()), key=lambda name: (_FIRST.get(name, 1), name))
+    _check_paired(received, ordered, request)
 
     units = units_of(received, request)
     hashed = _hashed(rows)
     tasks = {address[2][0]: row.task for address, row in received.items()}
-    trials, missing = table_of(received, conditions, units, request, hashed)
+    trials, missing = table_of(received, ordered, units, request, hashed)
     keys = {unit: sorted(members) for unit, members in units.labels.items()}
-    laid = tuple(_condition(name) for name in conditions)
-    dull = not any(row.status is Status.CRASH for row in rows)
+    conditions = tuple(_condition(name) for name in ordered)
+    crashed = any(row.status is Status.CRASH for row in rows)
     facts = ComparisonFacts(
         system="results of other tools",
         library="results",
         library_hash=hashlib.sha256(json.dumps(keys, sort_keys=True).encode()).hexdigest()[:16],
         n_scenes=len(units.labels),
         seeds=units.seeds,
-        primary=primary_condition(request.primary or "", laid),
+        primary=primary_condition(request.primary or "", conditions),
         trained=request.generalise == "models",
-        ends={Status.TIMEOUT.value: "no success"} if dull else {},
+        ends={} if crashed else {Status.TIMEOUT.value: "no success"},
         metrics=_metrics(request),
         pairing="hashes" if hashed else "keys",
         unit=request.cluster,
@@ -80,7 +80,7 @@ def pair_results(rows: Sequence[Received], request: JudgeQuestion) -> PairedResu
     longer = [unit for unit, members in units.labels.items() if len(members) > len(units.seeds)]
     findings = _findings(trials, missing, longer, tasks, request, hashed)
     return PairedResults(
-        request.model_copy(update={"folder": None}), facts, laid, trials, tuple(findings)
+        request.model_copy(update={"folder": None}), facts, conditions, trials, tuple(findings)
     )
 
 

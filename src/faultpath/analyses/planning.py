@@ -30,9 +30,9 @@ from faultpath.run.question import FEWEST_TRAININGS, AuditQuestion, RepairQuesti
 from faultpath.system.declared import Library, Variant
 from faultpath.system.system import System
 
-LOOK = 5
-"""Scenes from one look to the next of a sequential audit, where the system runs as many at once:
-fewer save few trials and cost much for systems that run their scenes together."""
+_BATCH = 5
+"""Scenes from one analysis to the next of a sequential audit, where the system runs as many at
+once: fewer save few trials and cost much for systems that run their scenes together."""
 _ORDER_SEED = 0
 """One order for each library, so that nobody can choose among several."""
 
@@ -110,14 +110,17 @@ def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library
     sequential = request.stop_when is not None
     chosen = scenes_of(library, request.scenes, in_order=not sequential)
     faults = system.fault(request.fault)
-    faults_of = faults_by_condition(faults, variants)
+    by_condition = faults_by_condition(faults, variants)
     conditions = [
-        _condition(name, of[request.repair], of[request.baseline]) for name, of in faults_of.items()
+        _condition(name, by_variant[request.repair], by_variant[request.baseline])
+        for name, by_variant in by_condition.items()
     ]
     # Where the fault cannot reach a variant, that is the treatment under correct inputs: it runs
     # once.
     rows = [
-        row for condition, of in faults_of.items() for row in rows_of(condition, of, request.seeds)
+        row
+        for condition, by_variant in by_condition.items()
+        for row in rows_of(condition, by_variant, request.seeds)
     ]
     _check(system, request)
     study = Study(
@@ -126,12 +129,12 @@ def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library
         library=library.name,
         scenes=chosen,
         rows=tuple(rows),
-        look=min(LOOK, system.block_size or LOOK) if sequential else 0,
+        scenes_per_analysis=min(_BATCH, system.block_size or _BATCH) if sequential else 0,
     )
     order = SceneOrder(
         scenes=chosen,
         seed=_ORDER_SEED,
-        per_analysis=study.look,
+        per_analysis=study.scenes_per_analysis,
         trials=len(study.treatments()),
     )
     facts = ComparisonFacts(
@@ -194,12 +197,12 @@ def rows_of(
 def _condition(name: str, repair: Sequence[Fault], baseline: Sequence[Fault]) -> Condition:
     """Return a condition of the fault, with what it reaches in each variant."""
     titles = {CORRECT: "Correct inputs", SHARED: "Shared fault"}
-    ours, theirs = (
+    readers, baseline_readers = (
         tuple(dict.fromkeys(reader for fault in faults for reader in fault.readers))
         for faults in (repair, baseline)
     )
     title = titles.get(name, f"{name.replace('_', ' ').capitalize()} only")
-    return Condition(name=name, title=title, readers=ours, baseline_readers=theirs)
+    return Condition(name=name, title=title, readers=readers, baseline_readers=baseline_readers)
 
 
 def _check(system: System, question: AuditQuestion) -> None:

@@ -1,8 +1,8 @@
 """At which shares, of faulty episodes or of common causes, a version is ahead."""
 
-from faultpath.analyses.compared import ComparedTrials
+from faultpath.analyses.compared import PairedTrials
 from faultpath.analyses.effects import Effect
-from faultpath.analyses.family import Family
+from faultpath.analyses.family import TestedContrasts
 from faultpath.analyses.model import Ahead, ConditionBreakEven, Share
 from faultpath.analyses.sentences.wording import first, last
 from faultpath.stats.breakeven import break_even, mixture_curve, only
@@ -10,7 +10,7 @@ from faultpath.stats.estimate import Region
 
 
 def between(
-    none: Effect, every: Effect, comparison: ComparedTrials, family: Family, over: Share
+    none: Effect, every: Effect, comparison: PairedTrials, family: TestedContrasts, over: Share
 ) -> ConditionBreakEven | None:
     """Return where baseline and repair are even between the effects at two ends of a share, over
     the scenes that both have; `None` where they have none in common.

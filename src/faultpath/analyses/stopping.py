@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 
 from faultpath.analyses.descriptive import cells_of, untested_conditions
 from faultpath.analyses.facts import ComparisonFacts, EarlierAnalysis, Question
-from faultpath.analyses.family import Family, family_of
+from faultpath.analyses.family import TestedContrasts, family_of
 from faultpath.analyses.model import Condition, StoppedAudit
 from faultpath.analyses.record import DecisionRecord
 from faultpath.analyses.sentences import phrases
@@ -26,7 +26,7 @@ def stops(
 
 
 def stopped(
-    question: Question, facts: ComparisonFacts, family: Family, trials: Trials
+    question: Question, facts: ComparisonFacts, family: TestedContrasts, trials: Trials
 ) -> StoppedAudit | None:
     """Return how a sequential audit stands with these trials; `None` of one that is not.
 

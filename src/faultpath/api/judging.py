@@ -63,33 +63,35 @@ def judge(
     shown = display(progress, "judge", fields)
     started = datetime.now(UTC)
     rows, sources = read_results(named, question)
-    laid = pair_results(rows, question)
-    folder = question.folder or _folder(laid, sources)
+    paired = pair_results(rows, question)
+    folder = question.folder or _folder(paired, sources)
     if (folder / "manifest.json").exists():
         raise UserError(f"{folder} holds an audit's trials: give another folder with --out.")
 
     def conclude() -> DecisionRecord:
-        return decide(laid.question, laid.facts, laid.conditions, laid.trials, laid.findings)
+        return decide(
+            paired.question, paired.facts, paired.conditions, paired.trials, paired.findings
+        )
 
     begin(folder)
-    record = concluded(folder, laid.facts.library_hash, conclude)
+    record = concluded(folder, paired.facts.library_hash, conclude)
     with locked(folder, shown.say):
-        system = _system(laid.question)
-        result = _stored(folder, laid, system)
+        system = _system(paired.question)
+        result = _stored(folder, paired, system)
         write_text(folder / RECORD, as_text(record), folder)
         provenance = run_provenance(folder, MADE_FROM, result, started, shown.command, local(0))
         code = provenance.code.model_copy(update={"data": sources})
         provenance = amend(folder, provenance.model_copy(update={"code": code}), MADE_FROM)
-    run = Run(folder, ReportInput(record, provenance, system, laid.trials))
+    run = Run(folder, ReportInput(record, provenance, system, paired.trials))
     run.report()
     if not shown.is_command:
-        for finding in laid.findings:
+        for finding in paired.findings:
             shown.say(finding)
     return run
 
 
-def _folder(laid: PairedResults, sources: dict[str, str]) -> Path:
-    question = laid.question
+def _folder(paired: PairedResults, sources: dict[str, str]) -> Path:
+    question = paired.question
     content = json.dumps(
         [sorted(sources.values()), question.model_dump(mode="json")], sort_keys=True
     )
@@ -111,9 +113,9 @@ def _system(question: JudgeQuestion) -> SystemShown:
     )
 
 
-def _stored(folder: Path, laid: PairedResults, system: SystemShown) -> RunResult:
+def _stored(folder: Path, paired: PairedResults, system: SystemShown) -> RunResult:
     """Write the trials and what else pages are made from."""
-    trials = laid.trials
+    trials = paired.trials
     kinds, first = np.unique(trials.places[:, :3], axis=0, return_index=True)
     rows: list[list[int]] = kinds[np.argsort(first)].tolist()
     taps = tuple(
@@ -125,7 +127,7 @@ def _stored(folder: Path, laid: PairedResults, system: SystemShown) -> RunResult
         )
         for variant, condition, seed in rows
     )
-    deliveries = Deliveries(rows=taps, findings=laid.findings)
+    deliveries = Deliveries(rows=taps, findings=paired.findings)
     outcomes = encode_outcomes(trials)
     write_file(folder / OUTCOMES, outcomes, folder)
     write_file(folder / TRACES, encode_traces(Trials.of(())), folder)
@@ -141,5 +143,5 @@ def _stored(folder: Path, laid: PairedResults, system: SystemShown) -> RunResult
         outcomes_sha256=digest,
         system_fingerprint=digest[:16],
         code=(),
-        library_hash=laid.facts.library_hash,
+        library_hash=paired.facts.library_hash,
     )

@@ -200,7 +200,7 @@ def run_again(
     replays: dict[TrialAddress, Replayed] = {}
     done = 0
 
-    def settle(task: BlockSpec, run: RecordedBlock) -> None:
+    def handle_reply(task: BlockSpec, run: RecordedBlock) -> None:
         nonlocal done
         done += 1
         for place, scene in enumerate(task.scenes):
@@ -214,7 +214,7 @@ def run_again(
         note(task.treatment, done, len(tasks))
 
     built = Built.of(system, study.system, study.library)
-    run_blocks(executor, built, tasks, settle)
+    run_blocks(executor, built, tasks, handle_reply)
     return [replays[at] for at in before if at in replays]
 
 

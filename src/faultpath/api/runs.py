@@ -67,11 +67,6 @@ class Run(FinishedRun):
         """All that its pages are made from."""
 
     @property
-    def headline(self) -> str:
-        """The result in one sentence."""
-        return self.record.headline
-
-    @property
     def sentences(self) -> tuple[str, ...]:
         """Answers: what follows, how sure it is and what stays open, a sentence or two each."""
         return self.record.sentences

@@ -93,8 +93,6 @@ class Tap:
     deliveries: int = 0
     asks: int = 0
     """Answers of a query, over all steps."""
-    ask: int = 0
-    """Answers of a query in the last step, which number its next one."""
     last_step: int = -1
     value: Array = None
     """The value of the step's reading."""

@@ -39,7 +39,7 @@ def _conditions(record: MapRecord) -> Table:
                 text = f"{wording.signed(point.difference)} {ends}"
                 entry = Entry(text=text, detected=point.sign != 0)
             entries.append(entry)
-        lines.append(line(facts.said(size), *entries))
+        lines.append(line(facts.size_label(size), *entries))
     return Table(
         name="conditions",
         title=f"{question.repair} minus {question.baseline}, success, pp",
@@ -61,14 +61,14 @@ def _flips(record: MapRecord) -> Table:
     for flip in record.flips:
         kept = turned = "neither"
         if flip.start and flip.until is not None:
-            kept = f"{ahead[flip.start]}, {facts.said(flip.until)}"
+            kept = f"{ahead[flip.start]}, {facts.size_label(flip.until)}"
         if flip.turned and flip.first is not None and flip.last is not None:
-            turned = f"{ahead[flip.turned]}, {facts.said(flip.first)}"
+            turned = f"{ahead[flip.turned]}, {facts.size_label(flip.first)}"
             if abs(flip.last) < facts.up_to:
-                turned += f" to {facts.said(flip.last)}"
+                turned += f" to {facts.size_label(flip.last)}"
         condition = SHARED if flip.condition == SHARED else f"{flip.condition} alone"
         direction = "above 0" if flip.direction > 0 else "below 0"
-        estimate = "no turn" if flip.estimate is None else facts.said(flip.estimate)
+        estimate = "no turn" if flip.estimate is None else facts.size_label(flip.estimate)
         lines.append(line(condition, direction, kept, estimate, turned))
     return Table(
         name="flips",

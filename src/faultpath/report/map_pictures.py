@@ -149,8 +149,9 @@ def _entry(svg: Svg, left: float, y: float, words: str) -> float:
 def correlation_picture(record: MapRecord) -> Svg:
     """Return the expected difference over the correlation, in a variant's colour where decided."""
     joint, question, facts = record.joint, record.question, record.facts
-    values = (f"{e.correlation:g}: {wording.plain(e.value)} pp" for e in joint.requested)
-    description = "; ".join(values)
+    description = "; ".join(
+        f"{e.correlation:g}: {wording.plain(e.value)} pp" for e in joint.requested
+    )
     width = _LEFT + _SIDE + _RIGHT
     svg = Svg(width, 286, f"Expected difference over the correlation, {facts.system}", description)
     x = Axis(-1.0, 1.0, 40, width - 10)

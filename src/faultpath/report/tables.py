@@ -237,7 +237,7 @@ def secondary(record: DecisionRecord) -> Table | None:
     question = record.question
     shown = {"time on joint successes (s)": [of.time_s for of in record.secondary]}
     for name, metric in record.facts.metrics.items():
-        label = f"{metric.said(name)} ({metric.unit})"
+        label = f"{metric.label(name)} ({metric.unit})"
         shown[label] = [of.metrics.get(name) for of in record.secondary]
 
     def entry(e: Estimate | None) -> str:
@@ -264,7 +264,7 @@ def by_threshold(record: DecisionRecord) -> Table | None:
     if not question.metric:
         return None
     metric = record.facts.metrics[question.metric]
-    label = metric.said(question.metric)
+    label = metric.label(question.metric)
     sign = "≤" if metric.better == "less" else "≥"
     means: list[str] = []
     for of in record.secondary:

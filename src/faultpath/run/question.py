@@ -280,6 +280,11 @@ class ScanQuestion(Request):
         default=True, description="Run trials, after ranking the sources by their readers."
     )
 
+    @property
+    def variants(self) -> tuple[str, ...]:
+        """The variants that are scanned."""
+        return (self.variant, self.repair) if self.repair else (self.variant,)
+
 
 class ScanCall(Execution, ScanQuestion):
     """A scan that is called for: its question, and how it runs."""

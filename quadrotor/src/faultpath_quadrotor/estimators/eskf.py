@@ -81,11 +81,11 @@ class ErrorStateFilter(Estimator):
         known = self.begun(read) if past is None else self.taken(past, read, inputs.step)
         outputs = {
             STATE_SOURCES[name]: scenes_first(estimate, count)
-            for name, estimate in self.said(known, read).items()
+            for name, estimate in self.estimates(known, read).items()
         }
         return outputs, (lanes, count, known)
 
-    def said(self, known: Filtered, read: Mapping[str, Tensor]) -> Mapping[str, Tensor]:
+    def estimates(self, known: Filtered, read: Mapping[str, Tensor]) -> Mapping[str, Tensor]:
         """Return the estimates `[..., L]` by channel at the step of `read`."""
         position, velocity, attitude = known.now()
         *_, before, last = read["gyroscope"]  # means over 10 ms: the present is half of that ahead

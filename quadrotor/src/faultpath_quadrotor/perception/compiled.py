@@ -7,7 +7,14 @@ from typing import NamedTuple
 import torch
 from torch import Tensor
 
-from faultpath_quadrotor.native.kernel_args import BLOCK, Block, Lent, fields, lend, pack
+from faultpath_quadrotor.native.kernel_args import (
+    BLOCK,
+    Block,
+    Lent,
+    as_kernel_argument,
+    fields,
+    pack,
+)
 from faultpath_quadrotor.native.library import WIDEST, Kernels
 
 HEIGHT, WIDTH, CODE = 36, 64, 64
@@ -51,8 +58,8 @@ class CompiledEncoder:
         for i, (shape, weight, bias) in enumerate(
             zip(ENCODER_SHAPES, weights, biases, strict=True)
         ):
-            lend(f"weights of layer {i}", weight.detach().contiguous(), *shape)
-            lend(f"biases of layer {i}", bias.detach().contiguous(), shape[0])
+            as_kernel_argument(f"weights of layer {i}", weight.detach().contiguous(), *shape)
+            as_kernel_argument(f"biases of layer {i}", bias.detach().contiguous(), shape[0])
         *convolutions, dense, last = (weight.detach() for weight in weights)
         # The kernel's features have their channels last, the model's flattened ones first.
         turned = dense.unflatten(1, (ENCODER_SHAPES[2][0], -1)).transpose(1, 2).flatten(1)
@@ -68,9 +75,9 @@ class CompiledEncoder:
         self._kernels.call(
             "faultpath_encode",
             self._table,
-            lend("depth", depth.float().contiguous(), len(depth), HEIGHT, WIDTH),
+            as_kernel_argument("depth", depth.float().contiguous(), len(depth), HEIGHT, WIDTH),
             len(depth),
-            lend("codes", codes, CODE, len(depth)),
+            as_kernel_argument("codes", codes, CODE, len(depth)),
         )
         return codes
 
@@ -120,7 +127,7 @@ class CompiledClearance:
         self._bounds = _Bounds(*bounds._replace(near_m=bounds.near_m**2))
         rows: list[Tensor] = []
         for maker, (outputs, inputs) in zip(makers, QUERY_SHAPES, strict=True):
-            lend("makers", maker.detach().contiguous(), outputs * inputs, CODE + 1)
+            as_kernel_argument("makers", maker.detach().contiguous(), outputs * inputs, CODE + 1)
             # Numbers stand in the order of `Query`: hidden layers in blocks of outputs, biases
             # first, padded with zeros; the last layer as it is.
             whole = maker.detach().unflatten(0, (outputs, inputs))
@@ -128,8 +135,8 @@ class CompiledClearance:
                 whole = pack(whole.roll(1, dims=1), BLOCK)
             rows.append(whole.reshape(-1, CODE + 1))
         numbers = torch.cat(rows).T.contiguous()
-        self._makers = lend("makers", numbers[:-1].contiguous(), CODE, _NUMBERS)
-        self._base = lend("base", numbers[-1].contiguous(), _NUMBERS)
+        self._makers = as_kernel_argument("makers", numbers[:-1].contiguous(), CODE, _NUMBERS)
+        self._base = as_kernel_argument("base", numbers[-1].contiguous(), _NUMBERS)
 
     def __call__(self, codes: Tensor, eye: Tensor, axes: Tensor, points: Tensor) -> Tensor:
         """Return the clearance `[S, N]`, m.
@@ -145,12 +152,12 @@ class CompiledClearance:
         self._kernels.call(
             "faultpath_clearance",
             *(self._bounds, self._makers, self._base),
-            lend("codes", codes.contiguous(), CODE, scenes),
-            lend("position", eye.contiguous(), scenes, 3),
-            lend("rotation", axes.contiguous(), scenes, 3, 3),
-            lend("points", points.contiguous(), 3, scenes, count),
+            as_kernel_argument("codes", codes.contiguous(), CODE, scenes),
+            as_kernel_argument("position", eye.contiguous(), scenes, 3),
+            as_kernel_argument("rotation", axes.contiguous(), scenes, 3, 3),
+            as_kernel_argument("points", points.contiguous(), 3, scenes, count),
             *(scenes, count),
-            lend("clearance", clearance, scenes, count),
+            as_kernel_argument("clearance", clearance, scenes, count),
         )
         return clearance
 
@@ -200,7 +207,9 @@ class CompiledRenderer:
         self._kernels = kernels
         _, count, scenes = solids.shape
         laid = solids.permute(2, 1, 0).contiguous()
-        self._solids = lend("solids", laid, scenes, count, _SOLID, dtype=torch.float64)
+        self._solids = as_kernel_argument(
+            "solids", laid, scenes, count, _SOLID, dtype=torch.float64
+        )
         left, up = (slope.float().contiguous() for slope in slopes)
         self._shape = (len(up), len(left))
         if not count or not len(up) or not 0 < len(left) <= _WIDEST_IMAGE or len(left) % WIDEST:
@@ -211,9 +220,9 @@ class CompiledRenderer:
             )
         self._camera = _Camera(
             *self._shape,
-            lend("left", left, len(left)),
-            lend("up", up, len(up)),
-            lend("planes", planes.double().contiguous(), 6, 4, dtype=torch.float64),
+            as_kernel_argument("left", left, len(left)),
+            as_kernel_argument("up", up, len(up)),
+            as_kernel_argument("planes", planes.double().contiguous(), 6, 4, dtype=torch.float64),
             range_m,
         )
 
@@ -226,9 +235,9 @@ class CompiledRenderer:
         self._kernels.call(
             "faultpath_render",
             *(self._camera, self._solids, count, scenes),
-            lend("position", at, 3, scenes, dtype=torch.float64),
-            lend("rotation", turned, 3, 3, scenes, dtype=torch.float64),
+            as_kernel_argument("position", at, 3, scenes, dtype=torch.float64),
+            as_kernel_argument("rotation", turned, 3, 3, scenes, dtype=torch.float64),
             scenes,
-            lend("images", images, scenes, *self._shape),
+            as_kernel_argument("images", images, scenes, *self._shape),
         )
         return images

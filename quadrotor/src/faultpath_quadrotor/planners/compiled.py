@@ -7,7 +7,7 @@ from typing import NamedTuple
 import torch
 from torch import Tensor
 
-from faultpath_quadrotor.native.kernel_args import lend
+from faultpath_quadrotor.native.kernel_args import as_kernel_argument
 from faultpath_quadrotor.native.library import Kernels
 
 TERMS = (
@@ -52,7 +52,8 @@ def cost(kernels: Kernels, terms: Mapping[str, float], paths: Paths) -> Tensor:
         paths: The candidates; at least one step, and K in whole vectors.
 
     Raises:
-        ValueError: A term is missing, or a tensor is not what the kernel takes; see `lend`.
+        ValueError: A term is missing, or a tensor is not what the kernel takes; see
+            `as_kernel_argument`.
     """
     if set(terms) != set(TERMS):
         raise ValueError(f"compiled cost: it takes {', '.join(TERMS)}")
@@ -62,15 +63,15 @@ def cost(kernels: Kernels, terms: Mapping[str, float], paths: Paths) -> Tensor:
     kernels.call(
         "faultpath_cost",
         ctypes.byref(_Weights(**terms)),
-        lend("positions", paths.positions.contiguous(), *moved),
-        lend("velocities", paths.velocities.contiguous(), *moved),
-        lend("rotation", paths.rotation.contiguous(), 3, 3, scenes, count),
-        lend("commands", paths.commands.contiguous(), steps, 4, scenes, count),
-        lend("clearance", paths.clearance.contiguous(), scenes, steps, count),
-        lend("goal", paths.goal.contiguous(), 3, scenes),
-        lend("hover", paths.hover.contiguous(), scenes),
+        as_kernel_argument("positions", paths.positions.contiguous(), *moved),
+        as_kernel_argument("velocities", paths.velocities.contiguous(), *moved),
+        as_kernel_argument("rotation", paths.rotation.contiguous(), 3, 3, scenes, count),
+        as_kernel_argument("commands", paths.commands.contiguous(), steps, 4, scenes, count),
+        as_kernel_argument("clearance", paths.clearance.contiguous(), scenes, steps, count),
+        as_kernel_argument("goal", paths.goal.contiguous(), 3, scenes),
+        as_kernel_argument("hover", paths.hover.contiguous(), scenes),
         *(steps, scenes, count),
-        lend("costs", costs, scenes, count),
+        as_kernel_argument("costs", costs, scenes, count),
     )
     return costs
 
@@ -96,11 +97,11 @@ def noise(
     drawn = torch.empty(horizon, 4, len(keys), candidates)
     kernels.call(
         "faultpath_noise",
-        lend("keys", keys, len(keys), 2, dtype=torch.uint64),
+        as_kernel_argument("keys", keys, len(keys), 2, dtype=torch.uint64),
         *(step, horizon, len(keys), candidates),
         (ctypes.c_float * 2)(*correlation),
-        lend("scratch", scratch, len(scratch), dtype=torch.int32),
-        lend("noise", drawn, *drawn.shape),
+        as_kernel_argument("scratch", scratch, len(scratch), dtype=torch.int32),
+        as_kernel_argument("noise", drawn, *drawn.shape),
     )
     return drawn
 
@@ -118,11 +119,11 @@ def weights(kernels: Kernels, costs: Tensor, fraction: float, least: float) -> T
     ranks, weighed = torch.empty(candidates, dtype=torch.int32), torch.empty_like(costs)
     kernels.call(
         "faultpath_weigh",
-        lend("costs", costs.contiguous(), scenes, candidates),
+        as_kernel_argument("costs", costs.contiguous(), scenes, candidates),
         (ctypes.c_float * 2)(fraction, least),
         *(scenes, candidates),
-        lend("ranks", ranks, candidates, dtype=torch.int32),
-        lend("weights", weighed, scenes, candidates),
+        as_kernel_argument("ranks", ranks, candidates, dtype=torch.int32),
+        as_kernel_argument("weights", weighed, scenes, candidates),
     )
     return weighed
 
@@ -133,9 +134,9 @@ def mean(kernels: Kernels, commands: Tensor, weights: Tensor) -> Tensor:
     means = commands.new_empty(steps, axes, scenes)
     kernels.call(
         "faultpath_mean",
-        lend("commands", commands.contiguous(), steps, axes, scenes, candidates),
-        lend("weights", weights.contiguous(), scenes, candidates),
+        as_kernel_argument("commands", commands.contiguous(), steps, axes, scenes, candidates),
+        as_kernel_argument("weights", weights.contiguous(), scenes, candidates),
         *(steps * axes, scenes, candidates),
-        lend("means", means, steps, axes, scenes),
+        as_kernel_argument("means", means, steps, axes, scenes),
     )
     return means

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor
 
-from faultpath_quadrotor.native.kernel_args import Block, Lent, fields, lend
+from faultpath_quadrotor.native.kernel_args import Block, Lent, as_kernel_argument, fields
 from faultpath_quadrotor.native.library import Kernels
 from faultpath_quadrotor.vehicle import (
     COLLECTIVE_MAX_N,
@@ -103,12 +103,12 @@ def watch(
         raise ValueError(f"contact is looked for every so many steps, not every {every}")
     lanes = goal.shape[-1]
     trial = _Trial(
-        lend("solids", solids, len(solids), _SOLID, lanes, dtype=torch.float64),
+        as_kernel_argument("solids", solids, len(solids), _SOLID, lanes, dtype=torch.float64),
         len(solids),
-        lend("goal", goal, 3, lanes, dtype=torch.float64),
+        as_kernel_argument("goal", goal, 3, lanes, dtype=torch.float64),
         *(radius_m, every, steps, rate_hz),
         *(
-            lend(name, value, lanes, dtype=dtype)
+            as_kernel_argument(name, value, lanes, dtype=dtype)
             for (name, dtype), value in zip(_STANDING.items(), standing, strict=True)
         ),
     )
@@ -123,7 +123,9 @@ class CompiledPlant:
         self._kernels = kernels
         lanes = airframes.shape[-1]
         whole = airframes.contiguous()
-        self._airframes = lend("airframes", whole, _AIRFRAME, lanes, dtype=torch.float64)
+        self._airframes = as_kernel_argument(
+            "airframes", whole, _AIRFRAME, lanes, dtype=torch.float64
+        )
         gravity_kick = -GRAVITY_MPS2 * 0.5 * dt_s
         limits = (RATE_GAIN_PER_S, RATE_LIMIT_RADPS, COLLECTIVE_MAX_N, MOTOR_THRUST_MAX_N)
         self._law = _Law(dt_s, gravity_kick, *limits)
@@ -163,7 +165,7 @@ class CompiledPlant:
             _ready("winds", winds, len(winds), 3, lanes),
             *(len(winds), lanes),
             None if watched is None else watched.trial,
-            lend("ends", ends, sum(_ROWS), lanes, dtype=torch.float64),
+            as_kernel_argument("ends", ends, sum(_ROWS), lanes, dtype=torch.float64),
         )
         parts = zip(ends.split(_ROWS), _BODY.values(), strict=True)
         return tuple(part.view(*shape, lanes) for part, shape in parts)
@@ -172,4 +174,4 @@ class CompiledPlant:
 def _ready(name: str, value: Tensor, *shape: int) -> Lent:
     if value.shape != shape:
         value = value.expand(shape)
-    return lend(name, value.double().contiguous(), *shape, dtype=torch.float64)
+    return as_kernel_argument(name, value.double().contiguous(), *shape, dtype=torch.float64)

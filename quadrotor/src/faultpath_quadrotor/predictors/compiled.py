@@ -20,9 +20,9 @@ from faultpath_quadrotor.native.kernel_args import (
     BLOCK,
     Block,
     Lent,
+    as_kernel_argument,
     fields,
     is_exactly,
-    lend,
     pack,
     unlike,
 )
@@ -183,11 +183,13 @@ class HorizonLoop:
         self._kernels.call(
             "faultpath_roll",
             *(self._model, _Inputs(*self._lent(readings, scenes))),
-            lend("commands", commands.contiguous(), horizon, ACTION_FEATURES, scenes, candidates),
+            as_kernel_argument(
+                "commands", commands.contiguous(), horizon, ACTION_FEATURES, scenes, candidates
+            ),
             *(horizon, scenes, candidates),
-            lend("positions", positions, 3, scenes, horizon, candidates),
-            lend("velocities", velocities, 3, scenes, horizon, candidates),
-            lend("ends", ends, 12, scenes, candidates),
+            as_kernel_argument("positions", positions, 3, scenes, horizon, candidates),
+            as_kernel_argument("velocities", velocities, 3, scenes, horizon, candidates),
+            as_kernel_argument("ends", ends, 12, scenes, candidates),
         )
         return Rolled(positions, velocities, ends[:9].unflatten(0, (3, 3)), ends[9:])
 
@@ -202,7 +204,7 @@ class HorizonLoop:
                     "none"
                 )
             else:
-                yield lend(channel, readings[read].contiguous(), *rows, scenes, 1)
+                yield as_kernel_argument(channel, readings[read].contiguous(), *rows, scenes, 1)
 
 
 def _integrator(integrator: KinematicIntegrator) -> str:
@@ -245,7 +247,9 @@ def _packed(network: LatentNetwork) -> dict[str, _Layer]:
     for name, weights in _layers(network).items():
         packed = pack(weights.detach() * _SCALES.get(name, 1.0), BLOCK)
         blocks, inputs, _ = packed.shape
-        laid[name] = _Layer(lend(name, packed, *packed.shape), inputs - 1, blocks * BLOCK)
+        laid[name] = _Layer(
+            as_kernel_argument(name, packed, *packed.shape), inputs - 1, blocks * BLOCK
+        )
     return laid
 
 

@@ -3,7 +3,7 @@
 import torch
 from torch import Tensor
 
-from faultpath_quadrotor.native.kernel_args import lend
+from faultpath_quadrotor.native.kernel_args import as_kernel_argument
 from faultpath_quadrotor.native.library import Kernels
 
 LATENT = 32
@@ -43,12 +43,12 @@ def recur(
     )
     kernels.call(
         "faultpath_recur",
-        lend("weights of the inputs", weights, GATES, inputs),
-        lend("biases of the inputs", biases, GATES, 1),
-        lend("weights of the latent", kept_weights, GATES, LATENT),
-        lend("biases of the latent", kept_biases, GATES, 1),
-        lend("sequence", sequence.contiguous(), steps, inputs, columns),
+        as_kernel_argument("weights of the inputs", weights, GATES, inputs),
+        as_kernel_argument("biases of the inputs", biases, GATES, 1),
+        as_kernel_argument("weights of the latent", kept_weights, GATES, LATENT),
+        as_kernel_argument("biases of the latent", kept_biases, GATES, 1),
+        as_kernel_argument("sequence", sequence.contiguous(), steps, inputs, columns),
         *(steps, inputs, columns),
-        lend("latent", latent, LATENT, columns),
+        as_kernel_argument("latent", latent, LATENT, columns),
     )
     return latent

@@ -5,7 +5,7 @@ import ctypes
 import torch
 from torch import Tensor
 
-from faultpath_quadrotor.native.kernel_args import Block, fields, lend
+from faultpath_quadrotor.native.kernel_args import Block, as_kernel_argument, fields
 from faultpath_quadrotor.native.library import Kernels
 
 
@@ -39,11 +39,11 @@ class CompiledField:
         self._kernels = kernels
         self._scenes = len(first)
         self._field = _Field(
-            lend("table", table, table.numel()),
+            as_kernel_argument("table", table, table.numel()),
             *pitch[:2],
-            lend("origin", origin.contiguous(), 3, self._scenes, 1),
-            lend("last", last.contiguous(), 3, self._scenes, 1),
-            lend("first", first.contiguous(), self._scenes, 1, dtype=torch.int32),
+            as_kernel_argument("origin", origin.contiguous(), 3, self._scenes, 1),
+            as_kernel_argument("last", last.contiguous(), 3, self._scenes, 1),
+            as_kernel_argument("first", first.contiguous(), self._scenes, 1, dtype=torch.int32),
             per_metre,
         )
         _check_places(len(table), pitch, last, first)
@@ -57,9 +57,9 @@ class CompiledField:
         self._kernels.call(
             "faultpath_field",
             self._field,
-            lend("points", points.float().contiguous(), 3, self._scenes, count),
+            as_kernel_argument("points", points.float().contiguous(), 3, self._scenes, count),
             *(self._scenes, count),
-            lend("distances", distances, self._scenes, count),
+            as_kernel_argument("distances", distances, self._scenes, count),
         )
         return distances
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from faultpath.plugin.data import locked, make_folder, sweep, write_file
 from faultpath.plugin.system import Stopped, UserError
 from faultpath.plugin.training import FitProgress, read_card
-from faultpath.plugin.work import Lost, Returned, local, run_each, tell
+from faultpath.plugin.work import Lost, Returned, local, run_each, send_message
 from faultpath_quadrotor import checkpoint, native
 from faultpath_quadrotor.checkpoint import ModelCard, checkpoint_path
 from faultpath_quadrotor.training import clearance_data, trajectories
@@ -164,16 +164,16 @@ def run_jobs(
 @native.using(native.PORTABLE)
 def fit_job(job: FitJob, data: Path, out: Path) -> Path:
     """Fit a model and return its file; report progress a few times a second."""
-    tell(None)  # it has begun: its data may take a while
+    send_message(None)  # it has begun: its data may take a while
     reported_s = 0.0
 
     def advance(moment: FitProgress) -> None:
         nonlocal reported_s
         if time.monotonic() - reported_s > _TELL_EVERY_S:
             reported_s = time.monotonic()
-            tell(moment)
+            send_message(moment)
 
-    return fit(job.task(data), out, advance, tell)
+    return fit(job.task(data), out, advance, send_message)
 
 
 def ship(path: Path) -> None:

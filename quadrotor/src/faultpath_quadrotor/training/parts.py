@@ -28,13 +28,13 @@ def make_missing(
 
     Raises the error of the first part that fails.
     """
-    tell = progress or (lambda done, total: None)
+    report = progress or (lambda done, total: None)
     missing = [[part for part in stage if not part.path.exists()] for stage in stages]
     total = sum(part.size for stage in stages for part in stage)
     done = total - sum(part.size for stage in missing for part in stage)
-    tell(done, total)
+    report(done, total)
     with local(workers) as executor:
         for stage in missing:
             for place, _ in run_all(executor, [part.make for part in stage]):
                 done += stage[place].size
-                tell(done, total)
+                report(done, total)

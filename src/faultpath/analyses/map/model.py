@@ -34,7 +34,7 @@ class MapFacts(Facts, allow_inf_nan=False):
         """Return an error from a coordinate of a point."""
         return round(self.up_to * units / UNITS, 12) + 0.0
 
-    def said(self, size: float) -> str:
+    def size_label(self, size: float) -> str:
         """Return a size in words: `+20 %`, or `+0.2 m`."""
         if self.relative:
             return f"{100 * size:+.3g} %".replace("-", MINUS) if size else "0 %"

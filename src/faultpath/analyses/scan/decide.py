@@ -64,7 +64,7 @@ def hurting(
 def _stages(
     question: ScanQuestion, errors: Sequence[ScanError], trials: Trials, scenes: Sequence[str]
 ) -> Iterable[StageOne]:
-    for variant in question.named_variants:
+    for variant in question.variants:
         success, _ = successes(trials, variant, [label([error]) for error in errors], scenes)
         yield stage_one(success[CORRECT], np.stack([success[label([e])] for e in errors]))
 
@@ -108,7 +108,7 @@ def concluded(
     Raises `UserError` where no trial of a condition is left.
     """
     mismatches: list[Mismatch] = []
-    versions = [_version(name, scanned, trials, mismatches) for name in question.named_variants]
+    versions = [_version(name, scanned, trials, mismatches) for name in question.variants]
     unlike = mismatch_words(mismatches)
     invalid: Invalid | None = "unpaired" if unlike else None
     if not deliveries.repeats:

@@ -86,7 +86,7 @@ class ScanPlan(Analysis[Scanned]):
     @property
     def per_scene(self) -> int:
         """Trials of one condition in one scene."""
-        return len(self.question.named_variants) * len(self.question.seeds)
+        return len(self.question.variants) * len(self.question.seeds)
 
     def expected(self) -> int:
         """Return about how many trials there will be."""
@@ -181,7 +181,7 @@ class ScanPlan(Analysis[Scanned]):
         faults = faults_of(self.system, errors)
         by_variant = {
             name: at_readers(faults, self.system.variants[name].readers)
-            for name in self.question.named_variants
+            for name in self.question.variants
         }
         for row in rows_of(label(errors) or CORRECT, by_variant, self.question.seeds):
             yield row.model_copy(update={"scenes": scenes})

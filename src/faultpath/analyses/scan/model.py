@@ -165,7 +165,7 @@ class ScanResult(Result):
                 raise ValueError("leaves an error out of the first stage")
             if not all({pair.worse} < {*pair.errors} for pair in version.pairs):
                 raise ValueError("has a pair of one error")
-        if tuple(version.variant for version in self.versions) != self.question.named_variants:
+        if tuple(version.variant for version in self.versions) != self.question.variants:
             raise ValueError("has other versions than its question")
         if len({tuple(of.errors for of in version.together) for version in self.versions}) > 1:
             raise ValueError("has other conditions in one version than in the other")

@@ -77,8 +77,8 @@ def _distribution(record: MapResult) -> str:
     facts = record.facts
     text = "Errors are taken to be Gaussian"
     for module, mean, spread in zip(facts.modules, facts.means, facts.spreads, strict=True):
-        middle = f"mean {facts.said(mean)}, " if mean else ""
-        size = facts.said(spread).removeprefix("+")
+        middle = f"mean {facts.size_label(mean)}, " if mean else ""
+        size = facts.size_label(spread).removeprefix("+")
         text += f", at the {module} with {middle}standard deviation {size}"
     text += "."
     if record.joint.outside >= 0.005:
@@ -104,7 +104,7 @@ def _turned(record: MapResult) -> list[tuple[str, int, list[float]]]:
 
 
 def _sizes(facts: MapFacts, values: Sequence[float]) -> str:
-    return series([facts.said(size) for size in values])
+    return series([facts.size_label(size) for size in values])
 
 
 def _reversals(record: MapResult) -> Iterator[str]:
@@ -128,13 +128,15 @@ def _flipped(record: MapResult, flip: Flip) -> str:
     if flip.start and flip.until is not None:
         reach = "at every size run"
         if abs(flip.until) < facts.up_to:
-            reach = f"at the sizes run up to {facts.said(flip.until)}" if flip.until else "at 0"
+            reach = (
+                f"at the sizes run up to {facts.size_label(flip.until)}" if flip.until else "at 0"
+            )
         clauses.append(f"{record.winner(flip.start)} is ahead {reach}")
     if flip.first is not None and flip.last is not None:
-        first = facts.said(flip.first)
+        first = facts.size_label(flip.first)
         reach = f"at the sizes run from {first} on"
         if abs(flip.last) < facts.up_to:
-            reach = f"at the sizes run from {first} to {facts.said(flip.last)}"
+            reach = f"at the sizes run from {first} to {facts.size_label(flip.last)}"
             reach = f"at {first}" if flip.first == flip.last else reach
         clauses.append(f"{record.winner(flip.turned)} is ahead {reach}")
     elif not flip.start or abs(flip.until or 0.0) < facts.up_to:
@@ -146,7 +148,7 @@ def _flipped(record: MapResult, flip: Flip) -> str:
 
 def at_point(record: MapResult, point: MapPoint) -> str:
     """Return a pair of errors and what was seen there, for the tip of a picture."""
-    sizes = zip(record.facts.modules, map(record.facts.said, point.errors), strict=True)
+    sizes = zip(record.facts.modules, map(record.facts.size_label, point.errors), strict=True)
     pair = ", ".join(f"{module} {size}" for module, size in sizes)
     decided = f"{record.winner(point.sign)} ahead" if point.sign else "not significant"
     interval = f"[{plain(point.low)}, {plain(point.high)}]"

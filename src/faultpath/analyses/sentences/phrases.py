@@ -67,18 +67,18 @@ def margin(record: AuditResult) -> str:
     return f"{record.question.margin_pp or 0.0:g} pp"
 
 
-def adjusted(record: AuditResult, of: Effect | Change) -> str:
+def adjusted(record: AuditResult, difference: Effect | Change) -> str:
     """Return `p = 0.250 after Holm`; nothing where nothing was tested."""
-    if of.corrected_p is None:
+    if difference.corrected_p is None:
         return ""
-    p = p_value(of.corrected_p)
+    p = p_value(difference.corrected_p)
     return f"p {p if p.startswith('<') else f'= {p}'} {record.facts.family}"
 
 
-def only_alone(of: Effect | Change) -> bool:
+def only_alone(difference: Effect | Change) -> bool:
     """Return whether the interval excludes 0 and yet the difference is not significant."""
-    low, high = of.interval or (0.0, 0.0)
-    tested = of.corrected_p is not None and not (of.sign or of.unsettled)
+    low, high = difference.interval or (0.0, 0.0)
+    tested = difference.corrected_p is not None and not (difference.sign or difference.unsettled)
     return tested and (low > 0 or high < 0)
 
 
@@ -183,21 +183,21 @@ def in_short(record: AuditResult, effect: Effect | None) -> str:
     return f"no significant difference{p}"
 
 
-def change(record: AuditResult, of: Change) -> str:
+def change(record: AuditResult, change: Change) -> str:
     """Say whether sharing the fault reverses the ranking, changes the difference, or neither."""
     effects = {effect.condition: effect for effect in record.effects}
     if record.invalid:
         return (
-            f"Nothing follows of the change from the effect {where(of.isolated)} to that "
+            f"Nothing follows of the change from the effect {where(change.isolated)} to that "
             f"{where(SHARED)}."
         )
-    ends = effects[of.isolated], effects[SHARED]
+    ends = effects[change.isolated], effects[SHARED]
     values = " to ".join(f"{signed(end.value)} pp" for end in ends)
-    numbers = f"{values}; change {signed(of.value)} pp {interval(of)}".rstrip()
-    numbers += f", {adjusted(record, of)}"
-    numbers += ": not significant, although the interval excludes 0" if only_alone(of) else ""
-    alone, shared = where(of.isolated), where(SHARED)
-    if of.turn == "reversal":
+    numbers = f"{values}; change {signed(change.value)} pp {interval(change)}".rstrip()
+    numbers += f", {adjusted(record, change)}"
+    numbers += ": not significant, although the interval excludes 0" if only_alone(change) else ""
+    alone, shared = where(change.isolated), where(SHARED)
+    if change.turn == "reversal":
         one, other = (record.winner(end.sign) for end in ends)
         aside = " One of the two lies at the floor or ceiling: this carries no headline."
         return (
@@ -205,13 +205,13 @@ def change(record: AuditResult, of: Change) -> str:
             f"{shared}, {other} does ({numbers})."
             f"{aside if any(end.extreme for end in ends) else ''}"
         )
-    if of.turn == "interaction":
+    if change.turn == "interaction":
         return (
             f"Significant interaction: the difference is not the same {alone} as {shared} "
             f"({numbers}); a reversal is not shown."
         )
     between = f"between the effect {alone} and that {shared} ({numbers})"
-    if of.unsettled:
+    if change.unsettled:
         return f"No change is significant {between}: trials that failed could undo it."
     return f"No change is significant {between}."
 
