@@ -10,6 +10,7 @@ from faultpath.learning.model_card import (
     save,
     weights_sha256,
 )
+from faultpath.learning.tensor_files import encoded, read_note, read_tensors
 from faultpath.learning.windows import window_taps
 
 __all__ = [
@@ -18,10 +19,13 @@ __all__ = [
     "FitTask",
     "Journal",
     "Schedule",
+    "encoded",
     "fill",
     "minibatches",
     "parameter_count",
     "read_card",
+    "read_note",
+    "read_tensors",
     "run",
     "save",
     "weights_sha256",

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 
 import torch
 from torch import Tensor
 
 from faultpath.loop import Batch, Inputs, Memory, Outputs, Port
 from faultpath_quadrotor.batching import lanes_last, lanes_of, scenes_first
-from faultpath_quadrotor.choices import Fixes
+from faultpath_quadrotor.choices import FILTERS, Fixes
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.estimators.kalman import (
     Belief,
@@ -114,32 +113,9 @@ class ErrorStateFilter(Estimator):
         return Filtered(belief, tuple(later), aiding[1:], tuple(innovations))
 
 
-@dataclass(frozen=True)
-class Tuned:
-    """A shipped filter."""
-
-    description: str
-    biases: bool = True
-    doubt: float = 1.0
-
-
-FILTERS: Mapping[str, Tuned] = MappingProxyType(
-    {
-        "eskf": Tuned("a Kalman filter that estimates the biases of its inertial sensors"),
-        "eskf-no-bias": Tuned(
-            "a Kalman filter that takes its inertial sensors for unbiased", False
-        ),
-        "eskf-cautious": Tuned(
-            "a Kalman filter that takes fixes for three times as noisy", doubt=3.0
-        ),
-    }
-)
-"""The shipped filters, by the names in `choices.FILTERS`."""
-
-
 def filtering(
     name: str, fixes: Fixes = Fixes.OPTICAL, device: torch.device = CPU
 ) -> ErrorStateFilter:
     """Return a shipped filter."""
-    tuned = FILTERS[name]
-    return ErrorStateFilter(Trust(sensors(fixes), tuned.biases, tuned.doubt), device)
+    tuning = FILTERS[name]
+    return ErrorStateFilter(Trust(sensors(fixes), tuning.biases, tuning.doubt), device)

@@ -1,7 +1,6 @@
 """Fitting of the learned predictors (paper, Section IV-A)."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,7 @@ from typing_extensions import override
 from faultpath.plugin.system import generator
 from faultpath.plugin.training import Schedule
 from faultpath_quadrotor import so3
-from faultpath_quadrotor.models import PREDICTORS
+from faultpath_quadrotor.models import blank_predictor
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.predictors import (
     AnchoredPredictor,
@@ -23,9 +22,10 @@ from faultpath_quadrotor.predictors import (
 )
 from faultpath_quadrotor.predictors.network import features
 from faultpath_quadrotor.state import State
+from faultpath_quadrotor.training.catalogue import entry
 from faultpath_quadrotor.training.corruption import DCC_HALF_RANGE, corrupted, dcc
 from faultpath_quadrotor.training.fitting import ModelTask
-from faultpath_quadrotor.training.provenance import rows_sha256
+from faultpath_quadrotor.training.pool import pool_path, pools_sha256
 from faultpath_quadrotor.training.windows import (
     HISTORY,
     HORIZON,
@@ -40,22 +40,7 @@ BATCH_SIZE = 256  # paper, Section IV-A
 PARTS = ("position", "velocity", "rotation", "rate")
 
 
-@dataclass(frozen=True)
-class PredictorRecipe:
-    """Data that a predictor learns from, and for how long (paper, Section IV-A)."""
-
-    pools: tuple[str, ...]
-    epochs: int
-    description: str
-
-
-_BOTH = ("nominal", "wind")
-RECIPES: Mapping[str, PredictorRecipe] = {
-    "wm-a": PredictorRecipe(("nominal",), 10, "physics-anchored"),
-    "wm-u": PredictorRecipe(("nominal",), 30, "unanchored"),
-    "wm-a-wind": PredictorRecipe(_BOTH, 10, "wind-conditioned anchored"),
-    "wm-a-nowind": PredictorRecipe(_BOTH, 10, "wind-withheld anchored"),
-}
+EPOCHS = {"wm-a": 10, "wm-u": 30, "wm-a-wind": 10, "wm-a-nowind": 10}  # paper, Section IV-A
 
 
 class PredictorTask(ModelTask):
@@ -72,15 +57,15 @@ class PredictorTask(ModelTask):
         self.name = name
         self.seed = seed
         self.order_key = name.removesuffix(DCC)
-        self._recipe = RECIPES[self.order_key]
-        self.schedule = Schedule(epochs=self._recipe.epochs, batch_size=BATCH_SIZE)
+        self.schedule = Schedule(epochs=EPOCHS[self.order_key], batch_size=BATCH_SIZE)
+        self._entry = entry(name)
         self._data = data
         self._half_range = half_range
         self.platform = PLATFORM.weights_hash(name)
 
     def load(self) -> None:
         """See `ModelTask.load`; several pools contribute equally many windows."""
-        pools = [windows_of(self._data / f"{name}.parquet") for name in self._recipe.pools]
+        pools = [windows_of(pool_path(self._data, name)) for name in self._entry.pools]
         training, self._validation = _equal_mix(pools)
         self._train, self.count = training, len(training)
         self._scales = scales(training)
@@ -122,9 +107,8 @@ class PredictorTask(ModelTask):
     @override
     def describe(self) -> Mapping[str, Any]:
         return {
-            "description": f"{self._recipe.description} predictor"
-            + (", fitted with calibration noise" if self.is_dcc else ""),
-            "data_sha256": rows_sha256(self._data, self._recipe.pools),
+            "description": self._entry.description,
+            "data_sha256": pools_sha256(self._data, self._entry.pools),
             "history": HISTORY,
             "horizon": HORIZON,
             "calibration_half_range": self._half_range if self.is_dcc else 0.0,
@@ -133,7 +117,7 @@ class PredictorTask(ModelTask):
         }
 
     def _blank(self) -> AnchoredPredictor | UnanchoredPredictor:
-        predictor = PREDICTORS[self.order_key].build()
+        predictor = blank_predictor(self.order_key)
         assert isinstance(predictor, AnchoredPredictor | UnanchoredPredictor)
         return predictor
 

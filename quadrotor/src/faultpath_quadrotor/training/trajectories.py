@@ -23,9 +23,9 @@ from faultpath_quadrotor.plant.world import CONTROL_STEPS
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.training import recorded
-from faultpath_quadrotor.training.collection import EpisodeBatch, make_pool
+from faultpath_quadrotor.training.catalogue import TRAJECTORY_POOL
 from faultpath_quadrotor.training.parts import Progress
-from faultpath_quadrotor.training.provenance import PoolRecipe, code_of
+from faultpath_quadrotor.training.pool import Part, PoolRecipe, code_of, make_pool
 from faultpath_quadrotor.training.recorded import Flights, blank_values
 from faultpath_quadrotor.vehicle import CONTROL_RATE_HZ
 
@@ -61,7 +61,6 @@ def record_flights(system: Quadrotor, variant: str, scenes: Sequence[str], seed:
     return Flights(values, steps, tuple(system.scene(scene).vehicle for scene in scenes))
 
 
-POOL = "trajectory"
 LIBRARY = "selection"
 SCENES = 70
 LEVELS = ("L1", "L2", "L3")
@@ -77,12 +76,8 @@ def record(folder: Path, workers: int = 2, progress: Progress | None = None) -> 
     predictor's checkpoint is missing.
     """
     batches = [
-        EpisodeBatch(
-            f"{level}-{first:03d}",
-            range(count * SCENES + first, count * SCENES + first + BLOCK),
-            partial(fly, level, first),
-        )
-        for count, level in enumerate(LEVELS)
+        Part(f"{level}-{first:03d}", BLOCK, partial(fly, level, first))
+        for level in LEVELS
         for first in range(0, SCENES, BLOCK)
     ]
     return make_pool(folder, recipe(), batches, workers, progress)
@@ -95,7 +90,9 @@ def recipe() -> PoolRecipe:
     settings = (LIBRARY, SCENES, LEVELS, VARIANT, SEED, BLOCK, PLATFORM.hash)
     content = repr((sorted(state.data.items()), state.given, code_of(), *settings))
     code = hashlib.sha256(content.encode()).hexdigest()
-    return PoolRecipe(pool=POOL, episodes=len(LEVELS) * SCENES, seed=SEED, code_sha256=code)
+    return PoolRecipe(
+        pool=TRAJECTORY_POOL, episodes=len(LEVELS) * SCENES, seed=SEED, code_sha256=code
+    )
 
 
 @native.using(native.PORTABLE)

@@ -16,8 +16,7 @@ from faultpath_quadrotor.predictors.history import STEPS
 from faultpath_quadrotor.predictors.predictor_inputs import Take, history, predictor_inputs
 from faultpath_quadrotor.predictors.rollout import unroll
 from faultpath_quadrotor.state import State
-from faultpath_quadrotor.training.pool import FlightData, read_pool
-from faultpath_quadrotor.training.recorded import COMPONENTS, SIGNALS
+from faultpath_quadrotor.training.recorded import COMPONENTS, SIGNALS, FlightData
 
 HISTORY = STEPS
 HORIZON = 20  # paper, Section IV-A
@@ -130,14 +129,14 @@ def windows_of(pool_path: Path) -> Windows:
 
     A pool of the paper gets the paper's number of windows, spread evenly over all possible ones.
     """
-    windows = cut(read_pool(pool_path))
+    windows = cut(FlightData.read(pool_path))
     count, every = COUNTS.get(pool_path.stem, len(windows)), len(windows)
     return windows if count >= every else windows.take(torch.arange(count) * every // count)
 
 
 def every_history(pool_path: Path) -> Windows:
     """Return every window of 12 intervals of a pool, without a future; raises as `windows_of`."""
-    return cut(read_pool(pool_path), 1, HISTORY)
+    return cut(FlightData.read(pool_path), 1, HISTORY)
 
 
 def starts(steps: int, stride: int = STRIDE, length: int = COMMANDS) -> list[int]:
