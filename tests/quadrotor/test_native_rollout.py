@@ -13,7 +13,6 @@ from faultpath_quadrotor.predictors import (
     UnanchoredPredictor,
 )
 from faultpath_quadrotor.predictors.network import GatedCell, draw_weights
-from faultpath_quadrotor.predictors.recurrent import recur
 from faultpath_quadrotor.predictors.rollout import Roll, Rollout, rolling, rollout
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import NOMINAL_DRAG_KGPS
@@ -121,7 +120,8 @@ def test_the_last_latent_is_the_portable_one_and_that_of_the_gru_of_torch(isa: s
         portable = cell.last(sequence).detach()
     assert portable.std() > 0.1
     given, kept = ((layer.weight, layer.bias) for layer in (cell.from_input, cell.from_latent))
-    compiled = recur(native.load(isa), given, kept, sequence)
+    with native.using(isa), torch.inference_mode():
+        compiled = cell.last(sequence)
     torch.testing.assert_close(compiled, portable, rtol=1e-5, atol=1e-5)
     reference = torch.nn.GRU(inputs, 32)
     weights = (given[0], kept[0], given[1][:, 0], kept[1][:, 0])

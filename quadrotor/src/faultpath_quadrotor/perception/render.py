@@ -97,9 +97,7 @@ class DepthRenderer:
             self._compiled = CompiledRenderer(
                 kernels,
                 torch.cat((geometry.numbers(), self._low[None], self._high[None])),
-                (left, up),
                 torch.cat((_PLANES, _OFFSETS[:, None]), 1),
-                RANGE_M,
             )
 
     def render(self, state: State) -> Tensor:

@@ -1,5 +1,6 @@
 """Cost that the planner minimises: goal, clearance risk, speed, heading and effort."""
 
+import ctypes
 from dataclasses import dataclass
 
 import torch
@@ -7,8 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from torch import Tensor
 
 from faultpath_quadrotor import native
-from faultpath_quadrotor.native.kernel_args import covered
-from faultpath_quadrotor.planners import compiled
+from faultpath_quadrotor.native.kernel_args import Block, covered, fields, lend
 from faultpath_quadrotor.predictors.rollout import Rollout
 from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M
 
@@ -57,6 +57,15 @@ def _norm(vector: Tensor) -> Tensor:
     return vector.square().sum(0).sqrt_()
 
 
+class _Weights(Block):
+    """`Weights` of `costs.cpp`."""
+
+    _fields_ = fields(
+        ctypes.c_float,
+        "running goal risk hit margin_m radius_m speed v_max_mps heading rate_effort thrust_effort",
+    )
+
+
 class NavigationCost:
     """The weighted sum of all terms."""
 
@@ -66,20 +75,29 @@ class NavigationCost:
     def __call__(self, scored: Scored) -> Tensor:
         """Return the cost `[S, K]`."""
         rollout, commands = scored.rollout, scored.commands
-        paths = compiled.Paths(
-            rollout.positions,
-            rollout.velocities,
-            rollout.final.rotation,
-            commands,
-            scored.clearance,
-            scored.goal,
-            scored.hover,
-        )
-        built = native.kernels_for(*paths)
+        steps, _, scenes, count = commands.shape
+        moved = (3, scenes, steps, count)
+        inputs = {
+            "positions": (rollout.positions, moved),
+            "velocities": (rollout.velocities, moved),
+            "rotation": (rollout.final.rotation, (3, 3, scenes, count)),
+            "commands": (commands, commands.shape),
+            "clearance": (scored.clearance, moved[1:]),
+            "goal": (scored.goal, (3, scenes)),
+            "hover": (scored.hover, (scenes,)),
+        }
+        built = native.kernels_for(*(value for value, _ in inputs.values()))
         if built is None or not self._has_kernel(commands):
             return self._portable(scored)
-        terms = {**self.weights.model_dump(), "radius_m": COLLISION_RADIUS_M}
-        return compiled.cost(built, terms, paths)
+        costs = commands.new_empty(scenes, count)
+        built.call(
+            "faultpath_cost",
+            _Weights(radius_m=COLLISION_RADIUS_M, **self.weights.model_dump()),
+            *(lend(name, value.contiguous(), *shape) for name, (value, shape) in inputs.items()),
+            *(steps, scenes, count),
+            lend("costs", costs, scenes, count),
+        )
+        return costs
 
     def _has_kernel(self, commands: Tensor) -> bool:
         return (

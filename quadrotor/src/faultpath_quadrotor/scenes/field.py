@@ -10,6 +10,7 @@ arena it goes on falling without end (cells at the border extrapolate): minus th
 distances beyond each wall, which trilinear cells reproduce, to rounding, however far a point lies.
 """
 
+import ctypes
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -20,8 +21,7 @@ import torch
 from torch import Tensor
 
 from faultpath_quadrotor import native
-from faultpath_quadrotor.native.kernel_args import covered
-from faultpath_quadrotor.scenes.compiled import CompiledField
+from faultpath_quadrotor.native.kernel_args import Block, covered, fields, lend
 from faultpath_quadrotor.scenes.geometry import rectangle_distance
 from faultpath_quadrotor.scenes.prisms import RoundedPrism, arena, solids
 from faultpath_quadrotor.scenes.scene import Scene
@@ -110,6 +110,17 @@ def _plan_distance(prisms: list[RoundedPrism], x: Tensor, y: Tensor) -> Tensor:
     return plan.amin(0)
 
 
+class _Field(Block):
+    """`Field` of `field.cpp`."""
+
+    _fields_ = (
+        ("table", ctypes.c_void_p),
+        *fields(ctypes.c_int64, "along_x along_y"),
+        *fields(ctypes.c_void_p, "origin last first"),
+        ("per_metre", ctypes.c_float),
+    )
+
+
 @dataclass(frozen=True)
 class DistanceField:
     """Baked distance of B scenes.
@@ -182,16 +193,40 @@ class DistanceField:
         Returns:
             `[B, N]`, m, not truncated. A point with a coordinate that is not a number gets NaN.
         """
-        compiled = self._compiled
-        return self._interpolate(points) if compiled is None else compiled.query(points)
+        kernels = native.kernels_on(self.table.device)
+        field = None if kernels is None else self._field
+        if kernels is None or field is None:
+            return self._interpolate(points)
+        scenes, count = len(self.first), points.shape[2]
+        distances = torch.empty(scenes, count)
+        points = points.expand(3, scenes, count).float().contiguous()
+        kernels.call(
+            "faultpath_field",
+            field,
+            lend("points", points, 3, scenes, count),
+            *(scenes, count),
+            lend("distances", distances, scenes, count),
+        )
+        return distances
 
     @cached_property
-    def _compiled(self) -> CompiledField | None:
-        kernels = native.kernels_on(self.table.device)
-        if kernels is None or not covered(self, DistanceField):
+    def _field(self) -> _Field | None:
+        """The field as its kernel reads it; `ValueError` where a cell lies outside the table."""
+        if not covered(self, DistanceField):
             return None
-        return CompiledField(
-            kernels, self.table, self.pitch, self.origin, self.last, self.first, self.per_metre
+        scenes = len(self.first)
+        steps = torch.tensor(self.pitch, dtype=torch.float64)[:, None, None]
+        furthest = (self.last * steps).sum(0) + self.first + sum(self.pitch)
+        inside = (self.first >= 0) & (self.last >= 0).all(0) & (furthest < len(self.table))
+        if self.pitch[2] != 1 or min(self.pitch) < 1 or not bool(inside.all()):
+            raise ValueError(f"distance field: cells of pitch {self.pitch} lie outside its table")
+        return _Field(
+            lend("table", self.table, self.table.numel()),
+            *self.pitch[:2],
+            lend("origin", self.origin.contiguous(), 3, scenes, 1),
+            lend("last", self.last.contiguous(), 3, scenes, 1),
+            lend("first", self.first.contiguous(), scenes, 1, dtype=torch.int32),
+            self.per_metre,
         )
 
     def _interpolate(self, points: Tensor) -> Tensor:
