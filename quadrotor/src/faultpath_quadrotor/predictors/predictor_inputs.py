@@ -9,10 +9,10 @@ from collections.abc import Callable, Collection
 import torch
 from torch import Tensor
 
-from faultpath.loop import Inputs, Port
+from faultpath.loop import Port
 from faultpath.plugin.system import SystemMistake
 from faultpath_quadrotor import so3
-from faultpath_quadrotor.batching import Delivered, lanes_last
+from faultpath_quadrotor.batching import Delivered
 from faultpath_quadrotor.device import host_readable
 from faultpath_quadrotor.predictors.base import PredictorInputs
 from faultpath_quadrotor.state import State
@@ -36,13 +36,9 @@ Take = Callable[[str, str], Tensor]
 """`take(channel, place)`: what a tap delivered, lanes last, single precision."""
 
 
-def taking(inputs: Inputs, lanes: Tensor) -> Take:
-    """Return the function that takes a step's readings, lanes last, single precision."""
-
-    def take(channel: str, place: str) -> Tensor:
-        return lanes_last(inputs[Port(channel, place)], lanes).float()
-
-    return take
+def single(readings: Delivered) -> Take:
+    """Return the function that takes readings in single precision."""
+    return lambda channel, place: readings[channel, place].float()
 
 
 def ports(places: Collection[str]) -> frozenset[Port]:
