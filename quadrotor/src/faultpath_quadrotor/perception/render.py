@@ -12,7 +12,7 @@ that a scene's image has the same bits in a batch of any size.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import torch
 from torch import Tensor
@@ -24,7 +24,7 @@ from faultpath_quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WID
 from faultpath_quadrotor.perception.compiled import CompiledRenderer
 from faultpath_quadrotor.scenes.geometry import Geometry
 from faultpath_quadrotor.scenes.scene import Scene
-from faultpath_quadrotor.state import State
+from faultpath_quadrotor.state import Batched, State
 
 _GROUP = 16
 """Scenes drawn at once, which bounds the scratch images."""
@@ -49,7 +49,7 @@ _OFFSETS = torch.tensor([0.0, RANGE_M, 0.0, 0.0, 0.0, 0.0], dtype=torch.float64)
 
 
 @dataclass(frozen=True)
-class _View:
+class _View(Batched):
     """The solids as the cameras see them; K prisms, L scenes, float64.
 
     Attributes:
@@ -65,10 +65,6 @@ class _View:
     half: Tensor
     rounding: Tensor
     seen: Tensor
-
-    def take(self, group: slice) -> "_View":
-        """Return the view of some scenes."""
-        return _View(*(getattr(self, field.name)[..., group] for field in fields(self)))
 
     def numbers(self) -> Tensor:
         """Return eye, axes, half extents and rounding as one table, `[16, K, L]`."""

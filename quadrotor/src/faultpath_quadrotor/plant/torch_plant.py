@@ -62,7 +62,7 @@ class TorchPlant(Plant):
     def advance(self, plant_state: PlantState, command: Tensor, winds: Tensor) -> PlantState:
         """Advance as every plant does; with a kernel in one call."""
         if self._compiled is not None:
-            return _state(self._compiled.fly(_parts(plant_state), command, winds))
+            return _state(self._compiled.fly(plant_state.parts, command, winds))
         level, target = self._limit(command)
         for wind_mps in winds.unbind(0):
             plant_state = self._step(plant_state, level, target, wind_mps)
@@ -90,7 +90,7 @@ class TorchPlant(Plant):
             steps=steps,
             rate_hz=PLANT_RATE_HZ,
         )
-        flown = self._compiled.fly(_parts(plant_state), command, winds, watched)
+        flown = self._compiled.fly(plant_state.parts, command, winds, watched)
         return _state(flown), replace(progress, **standing)
 
     def _airframes(self) -> Tensor:
@@ -124,11 +124,6 @@ class TorchPlant(Plant):
         velocity = velocity.add_(drag).add_(kick)
         position = torch.add(state.position, state.velocity + velocity, alpha=0.5 * dt_s)
         return PlantState(State(position, velocity, rotation, rate), thrusts)
-
-
-def _parts(plant_state: PlantState) -> tuple[Tensor, ...]:
-    state = plant_state.state
-    return state.position, state.velocity, state.rotation, state.rate, plant_state.thrusts
 
 
 def _state(parts: tuple[Tensor, ...]) -> PlantState:

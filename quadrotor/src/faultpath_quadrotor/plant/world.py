@@ -117,8 +117,7 @@ def _points(points: Sequence[Sequence[float]]) -> Tensor:
 
 
 def _row(state: State, lane: int) -> np.ndarray:
-    parts = (state.position, state.velocity, state.rotation, state.rate)
-    return torch.cat([part[..., lane].reshape(-1) for part in parts]).numpy()
+    return torch.cat([part[..., lane].reshape(-1) for part in state.parts]).numpy()
 
 
 def _hash(array: np.ndarray, salt: str = "") -> str:

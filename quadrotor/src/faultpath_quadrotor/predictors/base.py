@@ -65,10 +65,8 @@ class PredictorInputs:
     def take(self, scenes: Sequence[int] | Tensor) -> "PredictorInputs":
         """Return the inputs of some scenes, in the order given."""
         index = torch.as_tensor(scenes)
-        state = self.state
-        parts = (state.position, state.velocity, state.rotation, state.rate)
         return PredictorInputs(
-            State(*(part.index_select(-2, index) for part in parts)),
+            self.state.map(lambda part: part.index_select(-2, index)),
             {read: value.index_select(-2, index) for read, value in self.delivered.items()},
         )
 

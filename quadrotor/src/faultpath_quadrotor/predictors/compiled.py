@@ -177,9 +177,7 @@ class HorizonLoop:
         positions = commands.new_empty(3, scenes, horizon, candidates)
         velocities = torch.empty_like(positions)
         ends = commands.new_empty(12, scenes, candidates)
-        state = inputs.state
-        motion = (state.position, state.velocity, state.rotation, state.rate)
-        readings = {**dict(zip(_ROWS, motion, strict=False)), **inputs.delivered}
+        readings = {**dict(zip(_ROWS, inputs.state.parts, strict=False)), **inputs.delivered}
         self._kernels.call(
             "faultpath_roll",
             *(self._model, _Inputs(*self._lent(readings, scenes))),

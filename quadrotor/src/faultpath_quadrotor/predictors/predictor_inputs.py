@@ -5,6 +5,7 @@ delivered value comes from.
 """
 
 from collections.abc import Callable, Collection
+from dataclasses import replace
 
 import torch
 from torch import Tensor
@@ -107,5 +108,4 @@ def _start(state: State) -> State:
     off = (product - identity).abs().amax((0, 1)) > 1e-4
     if not host_readable(off.device) or off.any():
         rotation = torch.where(off, so3.project(rotation), rotation)
-    parts = (state.position, state.velocity, rotation, state.rate)
-    return State(*(part[..., None] for part in parts))
+    return replace(state, rotation=rotation).map(lambda part: part[..., None])
