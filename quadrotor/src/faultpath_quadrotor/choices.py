@@ -166,12 +166,12 @@ class QuadrotorChoices(BaseModel):
         """
         slots = (self.predictor, self.estimator, self.planner, self.plant)
         named = [*self.bring.split(","), *(name for name in slots if ":" in name)]
-        return tuple(dict.fromkeys(_own(name.strip()) for name in named if name.strip()))
-
-
-def _own(name: str) -> str:
-    head, _, rest = name.partition("/")
-    return rest if head in PREDICTORS else name
+        parts = (name.strip().partition("/") for name in named if name.strip())
+        return tuple(
+            dict.fromkeys(
+                rest if head in PREDICTORS else head + by + rest for head, by, rest in parts
+            )
+        )
 
 
 STATE_NOISE_STD = {"position": 0.02, "velocity": 0.05, "attitude": 0.01, "body_rate": 0.05}

@@ -101,19 +101,9 @@ class UserPart:
                 )
             if seed not in self._tried:
                 with torch.inference_mode():
-                    _explaining(lambda: self._try(part))
+                    _explaining(lambda: _try(self.name, part, self._settings))
                 self._tried.add(seed)
         return part
-
-    def _try(self, part: Any) -> None:
-        """Let a part do on a made-up moment what it will do in flight; `SystemMistake` for what it
-        returns in another shape than the loop takes."""
-        if isinstance(part, Predictor):
-            _try_predictor(self.name, part)
-        elif isinstance(part, Reconstruction):
-            _try_reconstruction(self.name, part)
-        elif isinstance(part, Planner):
-            _try_planner(self.name, part, self._settings)
 
 
 def load_user_parts(names: Sequence[str], settings: SamplerSettings) -> dict[str, UserPart]:
@@ -198,6 +188,17 @@ def _check_ports(name: str, reads: Collection[tuple[str, str]]) -> None:
                 f"{name} reads at {place!r} and not {channel} there: a fault reaches a place "
                 f"whole, so add ({channel!r}, {place!r}) to reads, used or not"
             )
+
+
+def _try(name: str, part: Any, settings: SamplerSettings) -> None:
+    """Let a part do on a made-up moment what it will do in flight; `SystemMistake` for what it
+    returns in another shape than the loop takes."""
+    if isinstance(part, Predictor):
+        _try_predictor(name, part)
+    elif isinstance(part, Reconstruction):
+        _try_reconstruction(name, part)
+    elif isinstance(part, Planner):
+        _try_planner(name, part, settings)
 
 
 def _try_predictor(name: str, predictor: Predictor) -> None:

@@ -11,7 +11,7 @@ from faultpath.learning.model_card import (
     weights_sha256,
 )
 from faultpath.learning.tensor_files import encoded, read_note, read_tensors
-from faultpath.learning.windows import window_taps
+from faultpath.learning.windows import validates, window_taps
 
 __all__ = [
     "Card",
@@ -28,6 +28,7 @@ __all__ = [
     "read_tensors",
     "run",
     "save",
+    "validates",
     "weights_sha256",
     "window_taps",
 ]

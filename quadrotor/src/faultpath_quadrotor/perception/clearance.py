@@ -6,7 +6,6 @@ hypernetwork: Ha, Dai and Le 2016). Its first layer is then a set of planes of t
 query costs no more than with fixed weights: what depends on the code is computed once a scene.
 """
 
-from collections.abc import Sequence
 from itertools import pairwise
 
 import torch
@@ -135,7 +134,10 @@ class ClearanceModel(nn.Module):
             ours = [weight[scene] for weight in weights]
             for first in range(0, points.shape[2], _BLOCK):
                 block = slice(first, first + _BLOCK)
-                clearance[scene, block] = _evaluate(ours, features(points[:, scene, block]))
+                hidden = features(points[:, scene, block])
+                for weight in ours[:-1]:
+                    hidden = torch.mm(weight, hidden).clamp_min_(0)
+                clearance[scene, block] = torch.mm(ours[-1], hidden)[0]
         return clearance.clamp_(LOWEST_M, HIGHEST_M)
 
     def estimate(self, codes: Tensor, points: Tensor) -> Tensor:
@@ -186,10 +188,3 @@ def _with_constant(weights: Tensor) -> Tensor:
     constant = weights.new_zeros(count, 1, columns)
     constant[..., -1].fill_(1)
     return torch.cat((weights, constant), 1)
-
-
-def _evaluate(weights: Sequence[Tensor], hidden: Tensor) -> Tensor:
-    first, second, last = weights
-    hidden = torch.mm(first, hidden).clamp_min_(0)
-    hidden = torch.mm(second, hidden).clamp_min_(0)
-    return torch.mm(last, hidden)[0]

@@ -104,9 +104,7 @@ class DepthClearance:
         """
         if self._captured is None:
             raise RuntimeError("nothing was captured yet: call `capture` before `query`")
-        return self._shown(self._captured.take(torch.as_tensor(scenes)), points)
-
-    def _shown(self, captured: _Captured, points: Tensor) -> Tensor:
+        captured = self._captured.take(torch.as_tensor(scenes))
         if self.queries is not None:
             return self.queries(captured.code, captured.position, captured.rotation, points)
         local = captured.frame().from_world(points)

@@ -137,7 +137,8 @@ class DepthRenderer:
 
         Only the device knows how many are in view.
         """
-        image = self._background(view).clamp_(0, RANGE_M)
+        arena = view.numbers()[:, 0].float()[..., None, None]
+        image = self._box(arena)[1].clamp_(0, RANGE_M)
         solids = view.numbers().float().flatten(1)[..., None, None]
         pillar = view.rounding > 0
         for visible, interval in (
@@ -149,10 +150,6 @@ class DepthRenderer:
             nearest = enter.masked_fill_(hidden, RANGE_M).unflatten(0, visible.shape).amin(0)
             torch.minimum(image, nearest, out=image)
         return image
-
-    def _background(self, view: _View) -> Tensor:
-        arena = view.numbers()[:, 0].float()[..., None, None]
-        return self._slabs(arena[0:3], arena[3:12].unflatten(0, (3, 3)), arena[12:15])[1]
 
     def _box(self, solid: Tensor) -> tuple[Tensor, Tensor]:
         eye, axes, half = solid[0:3], solid[3:12].unflatten(0, (3, 3)), solid[12:15]

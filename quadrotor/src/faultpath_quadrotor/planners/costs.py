@@ -87,7 +87,9 @@ class NavigationCost:
             "hover": (scored.hover, (scenes,)),
         }
         built = native.kernels_for(*(value for value, _ in inputs.values()))
-        if built is None or not self._has_kernel(commands):
+        if built is None or not (steps and native.whole_vectors(count)):
+            return self._portable(scored)
+        if not (covered(self, NavigationCost) and covered(self.weights, CostWeights)):
             return self._portable(scored)
         costs = commands.new_empty(scenes, count)
         built.call(
@@ -99,20 +101,14 @@ class NavigationCost:
         )
         return costs
 
-    def _has_kernel(self, commands: Tensor) -> bool:
-        return (
-            len(commands) > 0
-            and native.whole_vectors(commands.shape[-1])
-            and covered(self, NavigationCost)
-            and covered(self.weights, CostWeights)
-        )
-
     def _portable(self, scored: Scored) -> Tensor:
         w = self.weights
         end = _norm(scored.rollout.final.position - scored.goal[..., None])
         way = _norm(scored.rollout.positions - scored.goal[..., None, None]).mean(1)
         cost = torch.lerp(end, way, w.running).mul_(w.goal)
-        cost += self._risk(scored.clearance)
+        free = scored.clearance - COLLISION_RADIUS_M
+        risk = (1 - free / w.margin_m).clamp_(0, 1).square_().mean(1).mul_(w.risk)
+        cost += risk.add_((free < 0).to(free.dtype).mean(1), alpha=w.hit)
         speed = _norm(scored.rollout.velocities)
         cost += (speed - w.v_max_mps).clamp_(min=0).square_().mean(1).mul_(w.speed)
         cost += self._heading(scored).mul_(w.heading)
@@ -120,12 +116,6 @@ class NavigationCost:
         hover = scored.hover[:, None]
         thrust = (scored.commands[:, 0] - hover).square_().mean(0) / hover.square()
         return cost.add_(thrust, alpha=w.thrust_effort)
-
-    def _risk(self, clearance: Tensor) -> Tensor:
-        w = self.weights
-        free = clearance - COLLISION_RADIUS_M
-        risk = (1 - free / w.margin_m).clamp_(0, 1).square_().mean(1).mul_(w.risk)
-        return risk.add_((free < 0).to(free.dtype).mean(1), alpha=w.hit)
 
     def _heading(self, scored: Scored) -> Tensor:
         """One minus the cosine between the body's x axis and the direction of travel, seen from

@@ -57,13 +57,19 @@ class TorchPlant(Plant):
         fits = like.ndim == 1 and like.dtype == torch.float64
         self._compiled = None
         if kernels is not None and fits and covered(self, TorchPlant):
-            self._compiled = CompiledPlant(kernels, self._airframes(), dt_s)
+            # Of the second motor: one motor tells all by symmetry.
+            own, mixing = self._acceleration[:, 1].abs(), self._loop.per_acceleration[:, 1].abs()
+            weights = torch.stack((self._left_end, self._left_mean))
+            airframes = torch.cat((own, mixing, weights, self._coupling, self._relaxed))
+            self._compiled = CompiledPlant(kernels, airframes, dt_s)
 
     def advance(self, plant_state: PlantState, command: Tensor, winds: Tensor) -> PlantState:
         """Advance as every plant does; with a kernel in one call."""
         if self._compiled is not None:
             return _state(self._compiled.fly(plant_state.parts, command, winds))
-        level, target = self._limit(command)
+        level = 0.25 * command[0].clamp(0.0, COLLECTIVE_MAX_N)
+        rate = torch.clamp(command[1:], -self._rate_limit, self._rate_limit)
+        target = self._loop.target(rate)
         for wind_mps in winds.unbind(0):
             plant_state = self._step(plant_state, level, target, wind_mps)
         return plant_state
@@ -92,17 +98,6 @@ class TorchPlant(Plant):
         )
         flown = self._compiled.fly(plant_state.parts, command, winds, watched)
         return _state(flown), replace(progress, **standing)
-
-    def _airframes(self) -> Tensor:
-        own = self._acceleration[:, 1].abs()  # of the second motor: one motor tells all by symmetry
-        mixing = self._loop.per_acceleration[:, 1].abs()
-        weights = torch.stack((self._left_end, self._left_mean))
-        return torch.cat((own, mixing, weights, self._coupling, self._relaxed))
-
-    def _limit(self, command: Tensor) -> tuple[Tensor, Tensor]:
-        level = 0.25 * command[0].clamp(0.0, COLLECTIVE_MAX_N)
-        rate = torch.clamp(command[1:], -self._rate_limit, self._rate_limit)
-        return level, self._loop.target(rate)
 
     def _step(
         self, plant_state: PlantState, level: Tensor, target: Tensor, wind_mps: Tensor

@@ -1,6 +1,6 @@
 """The only horizon loop: planner, training and probes all roll a predictor out here."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -117,14 +117,10 @@ class Predicted:
     def moved(self, motion: Tensor) -> "Predicted":
         """Return it with other positions and velocities `[B, 6, H, K]`; attitudes stay."""
         lanes = motion.movedim(0, 1)
-        rollouts: Sequence[Rollout] = [
-            _moved(rollout, lanes[:, part.rows].contiguous())
-            for part, rollout in zip(self.parts, self.rollouts, strict=True)
-        ]
+        rollouts: list[Rollout] = []
+        for part, rollout in zip(self.parts, self.rollouts, strict=True):
+            positions, velocities = (x.contiguous() for x in lanes[:, part.rows].split(3))
+            end = positions[:, :, -1], velocities[:, :, -1]
+            final = replace(rollout.final, position=end[0], velocity=end[1])
+            rollouts.append(Rollout(positions, velocities, final))
         return replace(self, rollouts=tuple(rollouts))
-
-
-def _moved(rollout: Rollout, motion: Tensor) -> Rollout:
-    positions, velocities = motion[:3].contiguous(), motion[3:].contiguous()
-    final = replace(rollout.final, position=positions[:, :, -1], velocity=velocities[:, :, -1])
-    return Rollout(positions, velocities, final)

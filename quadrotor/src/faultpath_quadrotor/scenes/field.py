@@ -233,7 +233,11 @@ class DistanceField:
         local = (points - self.origin).mul_(self.per_metre)
         cell = torch.minimum(local, self.last).clamp_min_(0).floor_()
         x, y, z = local.sub_(cell).flatten(1)  # within the cell, or beyond it at the border
-        index = self._place(cell).flatten()
+        # Places within one scene stay below 2^24, up to where float32 counts exactly.
+        place = cell[0].mul_(self.pitch[0]).add_(cell[1].mul_(self.pitch[1])).add_(cell[2])
+        # NaN converts to any integer: keep the read inside the table, the fraction stays NaN.
+        most = len(self.table) - 1 - sum(self.pitch)
+        index = place.to(torch.int32).add_(self.first).clamp_(0, most).flatten()
         along_x, along_y, along_z = self.pitch
 
         def edge(shift: int) -> Tensor:  # between two lattice points along x
@@ -243,14 +247,6 @@ class DistanceField:
         near = _between(edge(0), edge(along_y), y)
         far = _between(edge(along_z), edge(along_z + along_y), y)
         return _between(near, far, z).view(points.shape[1:])
-
-    def _place(self, cell: Tensor) -> Tensor:
-        # Places within one scene stay below 2^24, up to where float32 counts exactly.
-        place = cell[0].mul_(self.pitch[0]).add_(cell[1].mul_(self.pitch[1])).add_(cell[2])
-        # NaN converts to any integer: keep the read inside the table, the fraction stays NaN.
-        return (
-            place.to(torch.int32).add_(self.first).clamp_(0, len(self.table) - 1 - sum(self.pitch))
-        )
 
 
 def _between(low: Tensor, high: Tensor, fraction: Tensor) -> Tensor:

@@ -148,7 +148,7 @@ def read_provenance(path: Path) -> Provenance | None:
     """Return where a pool comes from, `None` where there is none; `UserError` if damaged."""
     try:
         return Provenance.model_validate(read_note(path))
-    except FileNotFoundError:
+    except (FileNotFoundError, NotADirectoryError):
         return None
     except (OSError, Misread, ValidationError) as error:
         raise _damaged(path) from error

@@ -65,8 +65,12 @@ class PredictorTask(ModelTask):
 
     def load(self) -> None:
         """See `ModelTask.load`; several pools contribute equally many windows."""
-        pools = [windows_of(pool_path(self._data, name)) for name in self._entry.pools]
-        training, self._validation = _equal_mix(pools)
+        pools = [windows_of(pool_path(self._data, name)).split() for name in self._entry.pools]
+        fewest = min(len(training) for training, _ in pools)
+        training = Windows.join(
+            [part.take(torch.arange(fewest) * len(part) // fewest) for part, _ in pools]
+        )
+        self._validation = Windows.join([validation for _, validation in pools])
         self._train, self.count = training, len(training)
         self._scales = scales(training)
         readers = self._blank().readers()
@@ -146,14 +150,6 @@ def error(predicted: Sequence[State], windows: Windows, scale: Mapping[str, Tens
     return torch.stack(parts).mean()
 
 
-def _equal_mix(pools: list[Windows]) -> tuple[Windows, Windows]:
-    halves = [pool.split() for pool in pools]
-    training = [half[0] for half in halves]
-    fewest = min(len(windows) for windows in training)
-    mixed = [windows.take(torch.arange(fewest) * len(windows) // fewest) for windows in training]
-    return Windows.join(mixed), Windows.join([half[1] for half in halves])
-
-
 def _measure(network: LatentNetwork, windows: Windows) -> None:
     """Store the training windows' statistics, under true calibration, in the network."""
     state = windows.state(HISTORY)
@@ -163,12 +159,9 @@ def _measure(network: LatentNetwork, windows: Windows) -> None:
     network.feature_mean.copy_(raw.mean(1, keepdim=True))
     network.feature_std.copy_(raw.std(1, keepdim=True))
     if isinstance(network, UnanchoredNetwork):
-        network.increment_std.copy_(_increments(windows).std(1, keepdim=True))
-
-
-def _increments(windows: Windows) -> Tensor:
-    old, new = windows.state(HISTORY), windows.state(HISTORY + 1)
-    turned = so3.log(so3.compose(old.rotation.transpose(0, 1), new.rotation))
-    return torch.cat(
-        [new.position - old.position, new.velocity - old.velocity, new.rate - old.rate, turned]
-    )
+        ahead = windows.state(HISTORY + 1)
+        moved = [
+            getattr(ahead, name) - getattr(state, name) for name in ("position", "velocity", "rate")
+        ]
+        turned = so3.log(so3.compose(state.rotation.transpose(0, 1), ahead.rotation))
+        network.increment_std.copy_(torch.cat([*moved, turned]).std(1, keepdim=True))
