@@ -97,13 +97,9 @@ class ClearanceModel(nn.Module):
             nn.init.normal_(layer.bias, std=(2 / fan_in) ** 0.5, generator=generator)
 
     def encode(self, depth: Tensor) -> Tensor:
-        """Return the codes of images.
+        """Return the codes `[64, S]` of images `[S, 36, 64]`, m.
 
-        Args:
-            depth: z-depth `[S, 36, 64]`, m, float32.
-
-        Returns:
-            `[64, S]`; a scene's code has the same bits in a batch of any size.
+        A scene's code has the same bits in a batch of any size.
         """
         groups = -(-len(depth) // _GROUP)
         padded = depth.new_full((groups * _GROUP, *depth.shape[1:]), RANGE_M)
@@ -117,14 +113,10 @@ class ClearanceModel(nn.Module):
         return self.encoder(torch.stack((depth / RANGE_M, inverse), 1))
 
     def query(self, code: Tensor, points: Tensor) -> Tensor:
-        """Return the clearance at points.
+        """Return the clearance `[S, N]`, m, in [-0.3, 1], at points of the capture frame.
 
-        Args:
-            code: `[64, S]`.
-            points: In the capture frame, m, `[3, S, N]`, float32; N a multiple of 32.
-
-        Returns:
-            `[S, N]`, m, in [-0.3, 1]; a scene's values do not depend on the others.
+        `code` is `[64, S]`, `points` `[3, S, N]`, m, N a multiple of 32. A scene's values do not
+        depend on the others.
         """
         if not host_readable(points.device):
             return self.estimate(code.T, points.movedim(0, 1)).clamp_(LOWEST_M, HIGHEST_M)
@@ -141,14 +133,9 @@ class ClearanceModel(nn.Module):
         return clearance.clamp_(LOWEST_M, HIGHEST_M)
 
     def estimate(self, codes: Tensor, points: Tensor) -> Tensor:
-        """Return the clearance before it is bounded, for training: all scenes at once.
+        """Return the clearance `[S, N]` before it is bounded, for training: all scenes at once.
 
-        Args:
-            codes: `[S, 64]`, as from `encode_batch`.
-            points: In the capture frame, m, `[S, 3, N]`.
-
-        Returns:
-            `[S, N]`, m.
+        `codes` `[S, 64]` are those of `encode_batch`, `points` are `[S, 3, N]`, m.
         """
         hidden = features(points.movedim(1, 0)).movedim(0, 1)
         ones = torch.ones_like(hidden[:, :1])

@@ -106,13 +106,10 @@ class CompiledClearance:
         self._base = lend("base", numbers[-1].contiguous(), _NUMBERS)
 
     def __call__(self, codes: Tensor, eye: Tensor, axes: Tensor, points: Tensor) -> Tensor:
-        """Return the clearance `[S, N]`, m.
+        """Return the clearance `[S, N]` at points `[3, S, N]` of the world frame, m.
 
-        Args:
-            codes: `[64, S]`.
-            eye: Where the images were taken from, `[S, 3]`, m.
-            axes: The camera's attitudes there, `[S, 3, 3]`.
-            points: World frame, `[3, S, N]`, m.
+        Images of `codes` `[64, S]` were taken from `eye` `[S, 3]` with the attitudes `axes`
+        `[S, 3, 3]`.
         """
         _, scenes, count = points.shape
         clearance = points.new_empty(scenes, count)

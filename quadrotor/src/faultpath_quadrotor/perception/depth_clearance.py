@@ -80,18 +80,10 @@ class DepthClearance:
         self.queries = CompiledClearance(kernels, model, known.unseen_m, known.near_m)
 
     @torch.no_grad()
-    def capture(
-        self,
-        depth: Tensor,
-        position: Tensor,
-        rotation: Tensor,
-    ) -> None:
-        """Encode the images of all scenes: once a replan, however often it is queried.
+    def capture(self, depth: Tensor, position: Tensor, rotation: Tensor) -> None:
+        """Encode the images `[B, 36, 64]` of all scenes, m: once a replan, however often asked.
 
-        Args:
-            depth: z-depth `[B, 36, 64]`, m.
-            position: World frame, m, `[B, 3]`.
-            rotation: Body to world, `[B, 3, 3]`.
+        They were taken from positions `[B, 3]`, m, by cameras of attitudes `[B, 3, 3]`.
         """
         encode = self._model.encode if self.encoder is None else self.encoder
         self._captured = _Captured(encode(depth.float()), position.float(), rotation.float())

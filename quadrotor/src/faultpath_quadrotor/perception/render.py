@@ -97,15 +97,10 @@ class DepthRenderer:
             )
 
     def render(self, state: State) -> Tensor:
-        """Return what the cameras of vehicles see.
+        """Return what the cameras of vehicles see, z-depth `[B, 36, 64]`, m, float32, in [0, 6].
 
-        Args:
-            state: Batch `[L]` with lane b in scene b; lanes beyond the B scenes are not drawn. Only
-                position and rotation count.
-
-        Returns:
-            z-depth `[B, 36, 64]`, m, float32, in [0, 6]: the range where nothing is nearer, zero
-            where the camera is inside a solid.
+        That is the range where nothing is nearer, and zero where the camera is inside a solid. Of
+        the state, lane b in scene b, only position and rotation count.
         """
         count = self._geometry.sign.shape[1]
         position, rotation = state.position[:, :count], state.rotation[..., :count]
@@ -183,10 +178,7 @@ class DepthRenderer:
     def _slabs(self, eye: Tensor, axes: Tensor, half: Tensor) -> tuple[Tensor, Tensor]:
         """Return the depths at which rays enter and leave all slabs |coordinate| <= half.
 
-        Args:
-            eye: Camera's coordinates, `[A, n, 1, 1]`.
-            axes: Camera's axes along each coordinate, `[A, 3, n, 1, 1]`.
-            half: Half widths, `[A, n, 1, 1]`.
+        `eye` and `half` are `[A, n, 1, 1]`, the camera's `axes` `[A, 3, n, 1, 1]`.
         """
         inverse = self._directions(axes).add_(_NOT_ZERO).reciprocal_()
         count, size = eye.shape[:2]

@@ -83,10 +83,8 @@ class WindNetwork(nn.Module):
     def estimate(self, states: Tensor, commands: Tensor, calibration: Tensor | None) -> Tensor:
         """Return the wind `[3, N]`, m/s, world frame; it is never clipped.
 
-        Args:
-            states: State at each interval's end, `[18, 12, N]`.
-            commands: What was executed over each interval, `[4, 12, N]`, N and rad/s.
-            calibration: Delivered m~ (kg) and T~, `[2, N]`; `None` where it is withheld.
+        `states` are those at the intervals' ends, `[18, 12, N]`, `commands` `[4, 12, N]` what was
+        executed over them, `calibration` the delivered m~ (kg) and T~, `[2, N]`.
         """
         supplied = None if calibration is None else self.calibration(calibration)
         return self(*self.inputs(states, commands), supplied)

@@ -150,14 +150,7 @@ class DistanceField:
         spacing_m: float = CELL_M,
         device: torch.device | str | None = None,
     ) -> "DistanceField":
-        """Bake scenes into one table: about 0.8 MB each.
-
-        Args:
-            scenes: One scene or B of them; the order is the order of the batch.
-            free_space: Keep only the boundaries of each arena.
-            spacing_m: Distance between lattice points.
-            device: Where the queries run.
-        """
+        """Bake scenes, or their boundaries alone, into one table: about 0.8 MB each."""
         scenes = [scenes] if isinstance(scenes, Scene) else list(scenes)
         lattices = [Lattice.over(scene, spacing_m) for scene in scenes]
         shapes = torch.tensor([lattice.shape for lattice in lattices])  # [B, 3]
@@ -185,13 +178,9 @@ class DistanceField:
         )
 
     def query(self, points: Tensor) -> Tensor:
-        """Return the interpolated signed distance.
+        """Return the signed distance `[B, N]` at points `[3, B, N]`, world frame, m.
 
-        Args:
-            points: `[3, B, N]`, float32, world frame, m; scene b is axis 1.
-
-        Returns:
-            `[B, N]`, m, not truncated. A point with a coordinate that is not a number gets NaN.
+        It is not truncated. A point with a coordinate that is not a number gets NaN.
         """
         kernels = native.kernels_on(self.table.device)
         field = None if kernels is None else self._field
