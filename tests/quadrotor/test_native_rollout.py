@@ -10,6 +10,7 @@ from faultpath_quadrotor.predictors import (
     KinematicIntegrator,
     Predictor,
     PredictorInputs,
+    UnanchoredNetwork,
     UnanchoredPredictor,
 )
 from faultpath_quadrotor.predictors.network import GatedCell, draw_weights
@@ -37,7 +38,7 @@ def predictor(name: str) -> Predictor:
         drag, wind = name == "dki-drag", name != "dki-still"
         return KinematicIntegrator(drag, wind, drag_kgps=NOMINAL_DRAG_KGPS)
     if name == "wm-u":
-        unanchored = UnanchoredPredictor.build_network()
+        unanchored = UnanchoredNetwork()
         random_weights(unanchored)
         return UnanchoredPredictor(unanchored)
     anchored = AnchoredPredictor.build_network()

@@ -17,6 +17,7 @@ from faultpath_quadrotor.predictors import (
     KinematicIntegrator,
     Predictor,
     TrueParameter,
+    UnanchoredNetwork,
     UnanchoredPredictor,
 )
 from faultpath_quadrotor.reconstruction import (
@@ -37,7 +38,7 @@ def blank_predictor(name: str) -> Predictor:
         case "true-parameter":
             return TrueParameter()
         case "wm-u":
-            return UnanchoredPredictor(UnanchoredPredictor.build_network())
+            return UnanchoredPredictor(UnanchoredNetwork())
         case _:
             network = AnchoredPredictor.build_network()
             return AnchoredPredictor(network, name == "wm-a-wind", drag_kgps)

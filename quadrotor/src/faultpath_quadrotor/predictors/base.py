@@ -71,6 +71,18 @@ class PredictorInputs:
         )
 
 
+@dataclass(frozen=True)
+class Rollout:
+    """Predicted motion under candidate commands; `h = 0` is the end of the first interval."""
+
+    positions: Tensor
+    """`[3, S, H, K]`, metres, world frame: each scene's points lie together for the clearance."""
+    velocities: Tensor
+    """`[3, S, H, K]`, m/s, world frame."""
+    final: State
+    """State at the end of the horizon, batch `[S, K]`."""
+
+
 def hover_thrust(delivered: Delivered, place: str) -> Tensor:
     """Return the collective thrust that holds the vehicle if a place's calibration is right, N."""
     return delivered["mass", place] * GRAVITY_MPS2 / delivered["thrust_scale", place]

@@ -12,20 +12,9 @@ from faultpath_quadrotor.batching import Chunk
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.native.kernel_args import is_exactly, tell_portable
 from faultpath_quadrotor.predictors import Predictor, PredictorInputs, TrueParameter
+from faultpath_quadrotor.predictors.base import Rollout
 from faultpath_quadrotor.predictors.compiled import HorizonLoop, uncovered
 from faultpath_quadrotor.state import State
-
-
-@dataclass(frozen=True)
-class Rollout:
-    """Predicted motion under candidate commands; `h = 0` is the end of the first interval."""
-
-    positions: Tensor
-    """`[3, S, H, K]`, metres, world frame: each scene's points lie together for the clearance."""
-    velocities: Tensor
-    """`[3, S, H, K]`, m/s, world frame."""
-    final: State
-    """State at the end of the horizon, batch `[S, K]`."""
 
 
 def unroll(predictor: Predictor, inputs: PredictorInputs, commands: Tensor) -> Iterator[State]:
@@ -74,9 +63,7 @@ def rolling(predictor: Predictor, device: torch.device = CPU) -> Roll:
     def roll(inputs: PredictorInputs, commands: Tensor) -> Rollout:
         if commands.shape[-1] == 1:
             return rollout(predictor, inputs, commands)
-        positions, velocities, rotation, rate = loop(inputs, commands)
-        final = State(positions[:, :, -1], velocities[:, :, -1], rotation, rate)
-        return Rollout(positions, velocities, final)
+        return loop(inputs, commands)
 
     return roll
 
