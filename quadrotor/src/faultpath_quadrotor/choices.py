@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from faultpath.faults import Delay, Fault, Noise, Rotate, Scale, Sequence
-from faultpath.plugin.system import UserError
+from faultpath.plugin.system import Frozen, UserError
 from faultpath.system import Offered
 
 
@@ -103,10 +103,8 @@ FILTERS: Mapping[str, Tuning] = {
 }
 
 
-class QuadrotorChoices(BaseModel):
+class QuadrotorChoices(Frozen):
     """One configuration of the quadrotor, as far as a user chooses it."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     wind: Annotated[Wind, "Wind level."] = Wind.L0
     environment: Annotated[Environment, "What is flown through."] = Environment.OBSTACLES

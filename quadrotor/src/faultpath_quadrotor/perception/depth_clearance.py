@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import torch
-from pydantic import BaseModel, ConfigDict
 from torch import Tensor
 
+from faultpath.plugin.system import Frozen
 from faultpath_quadrotor import native
 from faultpath_quadrotor.device import CPU, host_readable
 from faultpath_quadrotor.native.kernel_args import covered, is_exactly, tell_portable, unlike
@@ -15,10 +15,8 @@ from faultpath_quadrotor.perception.clearance import ClearanceModel
 from faultpath_quadrotor.perception.compiled import CompiledClearance, CompiledEncoder
 
 
-class PerceptionSettings(BaseModel):
+class PerceptionSettings(Frozen):
     """Settings of perception (derived, docs/design/perception.md)."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     unseen_m: float = 0.3
     """Most clearance of space outside the field of view: the collision radius and 10 cm. A planner

@@ -4,22 +4,21 @@ import ctypes
 from dataclasses import dataclass
 
 import torch
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 from torch import Tensor
 
+from faultpath.plugin.system import Frozen
 from faultpath_quadrotor import native
 from faultpath_quadrotor.native.kernel_args import Block, covered, fields, lend
 from faultpath_quadrotor.predictors.rollout import Rollout
 from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M
 
 
-class CostWeights(BaseModel):
+class CostWeights(Frozen):
     """Weights of the terms, per replan. Goal, risk and speed are the paper's terms.
 
     The values were matched on the selection library (`docs/design/platform.md`).
     """
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     goal: float = 8.0
     running: float = Field(default=0.4, ge=0, le=1)

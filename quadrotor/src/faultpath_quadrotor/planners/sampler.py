@@ -6,20 +6,17 @@ from collections.abc import Sequence
 
 import numpy as np
 import torch
-from pydantic import BaseModel, ConfigDict
 from torch import Tensor
 from typing_extensions import override
 
-from faultpath.plugin.system import generator, key, words
+from faultpath.plugin.system import Frozen, generator, key, words
 from faultpath_quadrotor import native
 from faultpath_quadrotor.native.kernel_args import lend
 from faultpath_quadrotor.vehicle import RATE_LIMIT_RADPS
 
 
-class SamplerSettings(BaseModel):
+class SamplerSettings(Frozen):
     """Spread of the candidates. Sources: DATT, PA-MPPI and Minarik et al. for rho and sigma."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     candidates: int = 512  # paper, Section IV-A
     horizon: int = 20  # paper, Section IV-A
