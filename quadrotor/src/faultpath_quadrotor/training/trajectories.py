@@ -13,9 +13,10 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from faultpath.loop import Batch, Taps
+from faultpath.loop import Batch
 from faultpath.plugin.data import system_code
-from faultpath.run import SystemSpec
+from faultpath.plugin.recording import taps_of
+from faultpath.run import SystemSpec, Treatment
 from faultpath_quadrotor import native
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.plant.module import ACTION, Flying
@@ -37,16 +38,7 @@ def record_flights(system: Quadrotor, variant: str, scenes: Sequence[str], seed:
     Scene by scene in their order. `seed` is that of the planner's noise and of the variant's
     training. A scene's flight does not depend on the others, bit for bit.
     """
-    wired = system.variants[variant]
-    taps = Taps(
-        system.interface,
-        scenes=tuple(scenes),
-        dt_s=system.control_dt_s,
-        seed=seed,
-        bindings=wired.bindings,
-        readers=wired.readers,
-        privileged=wired.privileged,
-    )
+    taps = taps_of(system, Treatment(variant=variant, seed=seed), scenes)
     batch = Batch(tuple(scenes), seed, system.control_dt_s)
     values, world = blank_values(CONTROL_STEPS, len(scenes)), None
     for instant in system.loop(variant, seed).execute(batch, taps):
