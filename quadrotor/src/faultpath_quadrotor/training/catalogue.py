@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from faultpath.plugin.system import UserError
+from faultpath_quadrotor.training.parts import CLEARANCE_POOL, TRAJECTORY_POOL
 
 if TYPE_CHECKING:
     from faultpath_quadrotor.training.fitting import ModelTask
@@ -78,7 +79,6 @@ def _clearance(name: str, seed: int, data: Path) -> ModelTask:
     return ClearanceTask(seed, data)
 
 
-CLEARANCE_POOL, TRAJECTORY_POOL = "clearance", "trajectory"
 _NOMINAL, _WIND, _BOTH = ("nominal",), ("wind",), ("nominal", "wind")
 PREDICTORS = (
     ModelEntry("wm-a", _predictor, _NOMINAL, "physics-anchored predictor", 4),
@@ -130,11 +130,6 @@ GROUPS: dict[str, tuple[ModelEntry, ...]] = {
     "reconstructions": RECONSTRUCTIONS,
     "all": ALL,
 }
-
-
-def entry(name: str) -> ModelEntry:
-    """Return a model of the quadrotor."""
-    return next(entry for entry in ALL if entry.name == name)
 
 
 def choose(names: Sequence[str], seeds: Sequence[int] = ()) -> tuple[FitJob, ...]:

@@ -11,6 +11,7 @@ from typing_extensions import override
 from faultpath.plugin.system import generator
 from faultpath.plugin.training import Schedule
 from faultpath_quadrotor import so3
+from faultpath_quadrotor.choices import PREDICTORS
 from faultpath_quadrotor.models import blank_predictor
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.predictors import (
@@ -22,7 +23,6 @@ from faultpath_quadrotor.predictors import (
 )
 from faultpath_quadrotor.predictors.network import features
 from faultpath_quadrotor.state import State
-from faultpath_quadrotor.training.catalogue import entry
 from faultpath_quadrotor.training.corruption import DCC_HALF_RANGE, corrupted, dcc
 from faultpath_quadrotor.training.fitting import ModelTask
 from faultpath_quadrotor.training.pool import pool_path, pools_sha256
@@ -40,7 +40,14 @@ BATCH_SIZE = 256  # paper, Section IV-A
 PARTS = ("position", "velocity", "rotation", "rate")
 
 
-EPOCHS = {"wm-a": 10, "wm-u": 30, "wm-a-wind": 10, "wm-a-nowind": 10}  # paper, Section IV-A
+_NOMINAL, _BOTH = ("nominal",), ("nominal", "wind")
+RECIPES = {
+    "wm-a": (_NOMINAL, 10),
+    "wm-u": (_NOMINAL, 30),
+    "wm-a-wind": (_BOTH, 10),
+    "wm-a-nowind": (_BOTH, 10),
+}
+"""Pools and epochs (paper, Section IV-A)."""
 
 
 class PredictorTask(ModelTask):
@@ -57,15 +64,15 @@ class PredictorTask(ModelTask):
         self.name = name
         self.seed = seed
         self.order_key = name.removesuffix(DCC)
-        self.schedule = Schedule(epochs=EPOCHS[self.order_key], batch_size=BATCH_SIZE)
-        self._entry = entry(name)
+        self._pools, epochs = RECIPES[self.order_key]
+        self.schedule = Schedule(epochs=epochs, batch_size=BATCH_SIZE)
         self._data = data
         self._half_range = half_range
         self.platform = PLATFORM.weights_hash(name)
 
     def load(self) -> None:
         """See `ModelTask.load`; several pools contribute equally many windows."""
-        pools = [windows_of(pool_path(self._data, name)).split() for name in self._entry.pools]
+        pools = [windows_of(pool_path(self._data, name)).split() for name in self._pools]
         fewest = min(len(training) for training, _ in pools)
         training = Windows.join(
             [part.take(torch.arange(fewest) * len(part) // fewest) for part, _ in pools]
@@ -111,8 +118,8 @@ class PredictorTask(ModelTask):
     @override
     def describe(self) -> Mapping[str, Any]:
         return {
-            "description": self._entry.description,
-            "data_sha256": pools_sha256(self._data, self._entry.pools),
+            "description": PREDICTORS[self.name],
+            "data_sha256": pools_sha256(self._data, self._pools),
             "history": HISTORY,
             "horizon": HORIZON,
             "calibration_half_range": self._half_range if self.is_dcc else 0.0,

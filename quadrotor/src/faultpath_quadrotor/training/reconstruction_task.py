@@ -15,10 +15,10 @@ from typing_extensions import override
 
 from faultpath.plugin.system import generator
 from faultpath.plugin.training import Schedule
+from faultpath_quadrotor.choices import RECONSTRUCTIONS
 from faultpath_quadrotor.models import blank_reconstruction
-from faultpath_quadrotor.platform import PLATFORM
+from faultpath_quadrotor.platform import PLATFORM, TRAJECTORY
 from faultpath_quadrotor.reconstruction import RecurrentReconstruction, WindNetwork
-from faultpath_quadrotor.training.catalogue import TRAJECTORY_POOL, entry
 from faultpath_quadrotor.training.corruption import (
     DCC_HALF_RANGE,
     STATE_STD,
@@ -27,6 +27,7 @@ from faultpath_quadrotor.training.corruption import (
     state_noise,
 )
 from faultpath_quadrotor.training.fitting import ModelTask
+from faultpath_quadrotor.training.parts import TRAJECTORY_POOL
 from faultpath_quadrotor.training.pool import pool_path, pools_sha256
 from faultpath_quadrotor.training.windows import HISTORY, Windows, every_history, windows_of
 
@@ -82,7 +83,8 @@ class ReconstructionTask(ModelTask):
         self.seed = seed
         self.platform = PLATFORM.weights_hash(name)
         self.schedule = Schedule(epochs=40, batch_size=256, optimiser="adam")  # paper, appendix
-        self._model, self._entry = MODELS[name], entry(name)
+        self._model = MODELS[name]
+        self._pool = TRAJECTORY_POOL if name == TRAJECTORY else "wind"
         self._data = data_folder
         self.order_key = name.partition("+")[0]
         blank = blank_reconstruction(name)
@@ -91,9 +93,8 @@ class ReconstructionTask(ModelTask):
 
     @override
     def load(self) -> None:
-        (pool,) = self._entry.pools
-        windows = every_history if pool == TRAJECTORY_POOL else windows_of
-        self.use(*windows(pool_path(self._data, pool)).split())
+        windows = every_history if self._pool == TRAJECTORY_POOL else windows_of
+        self.use(*windows(pool_path(self._data, self._pool)).split())
 
     def use(self, training: Windows, validation: Windows) -> None:
         """Take windows from memory, and the scales of inputs from the training ones."""
@@ -132,8 +133,8 @@ class ReconstructionTask(ModelTask):
     @override
     def describe(self) -> Mapping[str, Any]:
         return {
-            "description": self._entry.description,
-            "data_sha256": pools_sha256(self._data, self._entry.pools),
+            "description": RECONSTRUCTIONS[self.name],
+            "data_sha256": pools_sha256(self._data, [self._pool]),
             "calibration_inputs": self._scaled.calibrated,
             "calibration_noise_half_range": self._model.half_range,
             **({"motion_noise_std": STATE_STD} if self._model.moves else {}),
