@@ -8,8 +8,8 @@ from pkgutil import resolve_name
 from typing import Any
 
 import pytest
-from faultpath_quadrotor.choices import DeviceName
-from faultpath_quadrotor.models import PREDICTORS, predictor
+from faultpath_quadrotor.choices import PREDICTORS, DeviceName
+from faultpath_quadrotor.models import predictor
 from faultpath_quadrotor.options import QuadrotorOptions
 from faultpath_quadrotor.perception import labels
 from faultpath_quadrotor.planners import CostWeights
@@ -113,7 +113,11 @@ NUMBERS: list[tuple[str, str, Number]] = [
     ("plant", "within +-# degrees", lambda: PLATFORM.winds.levels["L3"].elevation_deg),
     ("plant", "has # error states", "faultpath_quadrotor.estimators.kalman:SIZE"),
     ("platform", "a length scale of # m", lambda: PLATFORM.winds.length_m),
-    ("predictors", "# kinds behind", lambda: len({type(m.build()) for m in PREDICTORS.values()})),
+    (
+        "predictors",
+        "# kinds behind",
+        lambda: len({type(predictor(name, None)) for name in PREDICTORS}),
+    ),
     ("predictors", "embedding of #", "faultpath_quadrotor.predictors.network:ACTION_EMBEDDING"),
     ("predictors", "paper's #k and #k", lambda: (thousands("wm-a"), thousands("wm-u"))),
     (

@@ -6,6 +6,8 @@ from pathlib import Path
 
 from faultpath.plugin.work import local, run_all
 
+CLEARANCE_POOL, TRAJECTORY_POOL = "clearance", "trajectory"
+
 Progress = Callable[[float, float], None]
 """Called with the amount done and the total; its first call counts existing files."""
 
