@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from toy_study import SCENES, study, study_of
+from toy_study import SCENES, study_of
 from toy_system import ToySystem
 
 from faultpath.core.errors import UserError
@@ -107,15 +107,6 @@ def test_a_system_that_fails_everywhere_is_stopped_after_a_few(tmp_path, does, w
     assert "\n" not in said
     (named,) = (f for f in (tmp_path / "run" / "failures").iterdir() if str(f) in said)
     assert "Traceback" in named.read_text()
-
-
-@pytest.mark.parametrize(
-    ("limit", "workers", "says"),
-    [(math.nan, 1, "time limit"), (math.inf, 1, "time limit"), (9.0, 0, "needs worker processes")],
-)
-def test_a_limit_that_cannot_be_kept_is_refused(tmp_path, limit, workers, says):
-    with pytest.raises(UserError, match=says):
-        run_study(study(), tmp_path, workers=workers, time_limit_s=limit)
 
 
 def test_a_system_that_is_never_built_in_a_worker_is_not_waited_for(tmp_path, monkeypatch):
