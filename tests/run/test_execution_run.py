@@ -167,13 +167,13 @@ def _study_of(*rows: Row, scenes: tuple[str, ...] = SCENES) -> Study:
     return study().model_copy(update={"rows": rows, "scenes": scenes})
 
 
-@pytest.mark.parametrize("workers", [0, 1])
 @pytest.mark.parametrize(
-    ("variant", "reader", "error"),
+    ("variant", "reader", "error", "workers"),
     [
-        ("deaf", "observer.balance", NotDelivered),
-        ("nosy", "planner.thrust", UndeclaredReader),
-        ("plain", "observer.balance", UserError),
+        ("deaf", "observer.balance", NotDelivered, 0),
+        ("nosy", "planner.thrust", UndeclaredReader, 0),
+        ("nosy", "planner.thrust", UndeclaredReader, 1),
+        ("plain", "observer.balance", UserError, 0),
     ],
 )
 def test_an_audit_that_is_wrong_stops(tmp_path, variant, reader, error, workers):

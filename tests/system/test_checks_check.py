@@ -225,11 +225,6 @@ def test_a_modules_ports_are_what_it_looks_at(broken, says):
     assert any("'pilot'" in each and says in each for each in found["declared reads"]), found
 
 
-def test_what_differs_from_process_to_process_takes_workers_to_see():
-    assert failed(check(broken="hash of a text")) == {}
-    assert set(failed(check(broken="hash of a text", workers=1))) == {"determinism"}
-
-
 @pytest.mark.parametrize(
     ("question", "says"),
     [({"variants": ("bear",)}, "did you mean 'bare'"), ({"scenes": 7}, "1 to 6")],
