@@ -3,7 +3,8 @@
 import json
 
 import pytest
-from toy_audits import FILE, TOY, command
+from cli_runs import faultpath as command
+from toy_audits import FILE, TOY
 
 import faultpath
 from faultpath import check

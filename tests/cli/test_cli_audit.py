@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pyarrow.parquet as pq
 import pytest
-from cli_runs import HERE, ROOT, Ended, audit, faultpath, shards
+from cli_runs import ROOT, SYSTEMS, Ended, audit, faultpath, shards
 
 from faultpath.analyses.model import SHARED
 from faultpath.api.runs import open_run
@@ -16,7 +16,7 @@ FILES = {
     *("manifest.json", "outcomes.parquet", "traces.parquet", "record.json", "provenance.json"),
     *("system.json", "report.html", "table.md", "signals.parquet"),
 }
-BROKEN = f"{HERE / 'systems' / 'slow_toy.py'}:broken"
+BROKEN = f"{SYSTEMS / 'slow_toy.py'}:broken"
 SCENES = 40
 
 

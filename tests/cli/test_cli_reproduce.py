@@ -31,7 +31,7 @@ def done(
 ) -> Iterator[ReproductionRun]:
     """A reproduction whose flights are short."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(module, "CONTROL_STEPS", 40)
+        patch.setattr(module, "CONTROL_STEPS", 8)
         yield carry_out(PLAN, Job(tmp_path_factory.mktemp("quick"), Here(), DISPLAY))
 
 

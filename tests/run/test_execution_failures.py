@@ -1,21 +1,158 @@
-"""What is lost when something goes wrong: as little as can be."""
+"""What is lost to a system that hangs, exits, fails, dies or returns nonsense: little."""
 
 import json
+import math
+import os
+import sys
+import time
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from toy_study import SCENES, SYSTEM, UNITS, study, study_of
-from toy_system import STEPS
+from toy_system import STEPS, ToySystem
 
+from faultpath.core.errors import UserError
+from faultpath.loop import Reading
+from faultpath.run.attempt import WrongOutcomes
+from faultpath.run.execution import dispatch
 from faultpath.run.execution.runner import run_study
+from faultpath.run.execution.state import FEW
+from faultpath.system import Status
+
+WRONG = {
+    "distance": {"metrics": {"distance": math.nan}},
+    "status": {"status": "success"},
+    "object": {"trace": lambda: None},  # would not even cross to the parent
+    "surrogate": {"initial_hash": "\ud800"},
+    "error": {"status": Status.FAILED, "error": "lost \ud800"},
+    "nothing": lambda outcomes: None,
+    "dict": lambda outcomes: [vars(outcome) for outcome in outcomes],
+    "order": lambda outcomes: outcomes[::-1],
+}
 
 
-def _shards(folder: Path) -> int:
-    return len(list(folder.glob("shards/*.parquet")))
+class Unruly(ToySystem):
+    """Does one unruly thing, in the scene `where` or in all."""
+
+    def run(self, variant, scenes, taps, seed):
+        does, where = self._options["does"], self._options.get("where")
+        mass = np.ones(len(scenes))
+        match does if where in (None, *scenes) else "":
+            case "hang":
+                time.sleep(600)
+            case "exit":
+                sys.exit(int(self._options["status"]))
+            case "raise":
+                raise ValueError("no air\nanywhere")
+            case "lose its mass":
+                mass[scenes.index(where)] = math.nan
+                taps.deliver("mass", "planner.thrust", Reading(mass, "mass", 0), 0)
+            case "write":
+                got = taps.deliver("mass", "planner.thrust", Reading(mass, "mass", 0), 0)
+                got *= 2.0
+        outcomes = super().run(variant, scenes, taps, seed)
+        changes = WRONG.get(does, {})
+        if callable(changes):
+            return changes(outcomes)
+        return [replace(o, **changes) if o.scene == where else o for o in outcomes]
 
 
-def _calls(log: Path) -> list[list[str]]:
-    return [line.split() for line in log.read_text().splitlines()]
+def unruly(**options: str) -> Unruly:
+    return Unruly(**options)
+
+
+def bounded(**options: str) -> Unruly:
+    """Build one that says itself how long."""
+    system = Unruly(**options)
+    system.time_limit_s = 3.0
+    return system
+
+
+def slow_worker(parent: str) -> ToySystem:
+    """Build the system in the process `parent`, and wait for ever in any other."""
+    if os.getpid() != int(parent):
+        time.sleep(600)
+    return ToySystem()
+
+
+UNRULY = f"{__file__}:unruly"
+
+
+@pytest.mark.parametrize(
+    ("factory", "scenes", "limits"),
+    [("unruly", SCENES[5:6], {"time_limit_s": 3.0}), ("bounded", SCENES[4:6], {})],
+)
+def test_a_scene_that_takes_too_long_loses_itself_alone(tmp_path, factory, scenes, limits):
+    trials = study_of(f"{__file__}:{factory}", scenes, does="hang", where="s05")
+    (failure,) = run_study(trials, tmp_path, workers=1, **limits).failures
+    assert failure.scene == "s05"
+    assert "stopped at the time limit of 3 s" in failure.error
+
+
+@pytest.mark.parametrize(("workers", "status"), [(0, "0"), (1, "1")])
+def test_a_system_that_exits_has_failed(tmp_path, workers, status):
+    trials = study_of(UNRULY, SCENES[:8], does="exit", where="s05", status=status)
+    (failure,) = run_study(trials, tmp_path, workers=workers).failures
+    assert failure.scene == "s05"
+    assert f"called sys.exit({status})" in failure.error
+
+
+@pytest.mark.parametrize(("workers", "does"), [(0, "exit"), (2, "raise")])
+def test_a_system_that_fails_everywhere_is_stopped_after_a_few(tmp_path, does, workers):
+    trials = study_of(UNRULY, count=12, does=does, status="0")
+    with pytest.raises(UserError, match=f"all of the first {FEW} trials failed") as caught:
+        run_study(trials, tmp_path / "run", workers=workers)
+    said = str(caught.value)
+    assert ("ValueError: no air anywhere" if does == "raise" else "sys.exit(0)") in said
+    assert "\n" not in said
+    (named,) = (f for f in (tmp_path / "run" / "failures").iterdir() if str(f) in said)
+    assert "Traceback" in named.read_text()
+
+
+def test_a_system_that_is_never_built_in_a_worker_is_not_waited_for(tmp_path, monkeypatch):
+    monkeypatch.setattr(dispatch, "LEAST_S", 1.0)
+    trials = study_of(f"{__file__}:slow_worker", parent=str(os.getpid()))
+    with pytest.raises(UserError, match=r"was not built in a worker process within 2 s: look"):
+        run_study(trials, tmp_path, workers=1, time_limit_s=2.0)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "workers"),
+    [("distance", 0), ("status", 0), ("object", 1), ("surrogate", 1), ("error", 1)],
+)
+def test_a_malformed_outcome_fails_its_trial_alone(tmp_path, wrong, workers):
+    trials = study_of(UNRULY, does=wrong, where="s05")
+    result = run_study(trials, tmp_path, workers=workers)
+    statuses = {row.outcome.scene: row.outcome.status for row in result.trials}
+    assert [scene for scene in SCENES if statuses[scene] is Status.FAILED] == ["s05"]
+    (failure,) = result.failures
+    assert failure.error
+    assert failure.error in failure.details.read_text()
+    assert run_study(trials, tmp_path, workers=0).outcomes_sha256 == result.outcomes_sha256
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said", "workers"),
+    [("nothing", "a NoneType", 1), ("dict", "a dict in place of", 0), ("order", "in order", 0)],
+)
+def test_no_outcomes_at_all_stop_the_study(tmp_path, wrong, said, workers):
+    with pytest.raises(WrongOutcomes, match=said):
+        run_study(study_of(UNRULY, does=wrong), tmp_path, workers=workers)
+
+
+def test_a_reading_that_is_no_number_costs_its_scene_alone(tmp_path):
+    trials = study_of(UNRULY, SCENES[4:8], does="lose its mass", where="s05")
+    (failure,) = run_study(trials, tmp_path, workers=0).failures
+    assert failure.scene == "s05"
+    assert "tap mass -> planner.thrust: the first reading is not finite" in failure.error
+
+
+def test_a_reader_that_writes_is_told_to_copy(tmp_path):
+    result = run_study(study_of(UNRULY, SCENES[4:8], does="write"), tmp_path, workers=0)
+    assert len(result.failures) == 4
+    assert "what a tap delivers cannot be written to" in result.failures[0].error
 
 
 @pytest.fixture(scope="module")
@@ -25,13 +162,8 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def _same_tables(one: Path, two: Path) -> bool:
-    names = ("outcomes.parquet", "traces.parquet")
-    return all((one / name).read_bytes() == (two / name).read_bytes() for name in names)
-
-
 def test_a_scene_that_fails_loses_itself_alone(undisturbed, tmp_path):
-    result = run_study(study(raises="s05"), tmp_path, workers=2)
+    result = run_study(study(raises="s05"), tmp_path, workers=0)
     sound = run_study(study(), undisturbed, workers=0)
     for row, expected in zip(result.trials, sound.trials, strict=True):
         if row.outcome.scene == "s05":
@@ -53,9 +185,10 @@ def test_a_worker_that_dies_once_costs_nothing(undisturbed, tmp_path):
     once, log = tmp_path / "died", tmp_path / "log"
     mortal = study(dies="s05", once=str(once), log=str(log))
     result = run_study(mortal, tmp_path / "run", workers=2, recheck=False)
-    assert len(_calls(log)) == UNITS + 1  # its block ran again, as a whole
+    assert len(log.read_text().splitlines()) == UNITS + 1  # its block ran again, as a whole
     assert not result.failures
-    assert _same_tables(undisturbed, tmp_path / "run")
+    for name in ("outcomes.parquet", "traces.parquet"):
+        assert (tmp_path / "run" / name).read_bytes() == (undisturbed / name).read_bytes()
 
 
 def test_a_scene_that_kills_its_worker_loses_itself_alone(tmp_path):

@@ -22,7 +22,7 @@ from faultpath.run.work import ray_cluster
 from faultpath.run.work.executor import Failed, Lost, Returned, elsewhere, tell
 from faultpath.run.work.ray_cluster import RayWorkers
 
-UNRULY = Path(__file__).with_name("test_execution_limits.py")
+UNRULY = Path(__file__).with_name("test_execution_failures.py")
 OTHER = """
 import os
 from toy_system import ToySystem
