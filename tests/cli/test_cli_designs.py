@@ -4,6 +4,7 @@ import json
 import shlex
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
@@ -121,8 +122,8 @@ def test_what_is_stopped_goes_on_to_the_same_bytes(
     save, blocks = RunFolder.save_shard, len(shards(whole))
     for count in (2, blocks - 1):
 
-        def stop(folder: RunFolder, *shard: object, count: int = count) -> None:
-            save(folder, *shard)  # type: ignore[arg-type]
+        def stop(folder: RunFolder, *shard: Any, count: int = count) -> None:
+            save(folder, *shard)
             if len(shards(folder.path)) >= count:
                 raise KeyboardInterrupt
 
