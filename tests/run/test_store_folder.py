@@ -14,6 +14,7 @@ from faultpath.run.code import CodeState
 from faultpath.run.plan import Row, Study, SystemSpec, Treatment
 from faultpath.run.store.folder import RunFolder, read_outcomes
 from faultpath.run.store.manifest import FORMAT, Manifest
+from faultpath.run.store.tables import encode_shard
 from faultpath.system.outcome import Outcome, Status
 
 
@@ -65,6 +66,27 @@ def test_a_shard_reads_back(folder):
     assert found.outcomes[0].trace is not None
     assert found.outcomes[0].trace.dtype == np.float32
     assert folder.load_shard("another", SCENES, _unexpected) is None
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda data: data[: len(data) // 2],
+        lambda data: data[:40] + bytes([data[40] ^ 1]) + data[41:],
+        lambda data: encode_shard(
+            "k", Done(tuple(replace(o, time_s=9.0) for o in _outcomes()), TAPS)
+        ),
+    ],
+    ids=["truncated", "flipped", "edited"],
+)
+def test_a_damaged_shard_is_named_and_removed(folder, damage):
+    (shard,) = folder.shards.iterdir()
+    shard.write_bytes(damage(shard.read_bytes()))
+    notices: list[str] = []
+    assert folder.load_shard("k", SCENES, notices.append) is None
+    assert len(notices) == 1
+    assert str(shard) in notices[0]
+    assert not shard.exists()
 
 
 def test_of_two_shards_of_a_block_the_one_that_failed_less_is_taken(folder):
