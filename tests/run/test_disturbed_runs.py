@@ -7,6 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+import pytest
 from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, precondition, rule
@@ -135,6 +136,25 @@ class DisturbedWithLooks(Disturbed):
     """One with a study that stops at a look."""
 
     look, widths, reached = 2, (ORDER[:4], ORDER), (4, 6, 99)
+
+
+@pytest.mark.parametrize("kind", [Disturbed, DisturbedWithLooks])
+def test_what_befalls_most_runs(kind: type[Disturbed]) -> None:
+    """Whatever Hypothesis draws: a stop, a look, damage, and a failure that is then cured."""
+    run, whole, few = kind(), (5, 1), (0, 0)
+    try:
+        run.stops(*whole, 3)
+        run.ends(*few)
+        run.is_killed_while_it_writes()
+        run.spoils(1, "cut")
+        run.ends(*whole)
+        run.gets_air()
+        run.ends(*whole)
+        run.ends(*whole)
+        run.ends(5, 2)
+        run.ends(*whole)
+    finally:
+        run.teardown()
 
 
 QUICK = settings(
