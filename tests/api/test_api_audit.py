@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pyarrow as pa
 import pytest
+from cli_runs import faultpath as command
 from rich.console import Console
-from toy_audits import AUDIT, FILE, TOY, command
+from toy_audits import AUDIT, FILE, TOY
 
 import faultpath
 from faultpath.api.display import Display
@@ -21,6 +22,7 @@ from faultpath.run.store.signals import encode_signals
 from faultpath.run.store.tables import encode_outcomes, encode_traces
 
 ASKED = {**AUDIT, "scenes": 12, "signals": False}
+SEQUENTIAL = {**ASKED, "scenes": 60, "stop_when": "decided"}
 
 
 @pytest.fixture(autouse=True)
@@ -115,14 +117,6 @@ def test_an_object_that_was_changed_is_not_taken_for_what_was_loaded():
         faultpath.audit(loaded, **ASKED | {"workers": 2})
 
 
-def test_the_default_folder_is_found_again_by_the_same_call():
-    first = faultpath.audit(TOY, **ASKED)
-    assert first.folder.parent == Path("runs")
-    again = faultpath.audit(TOY, **ASKED)
-    assert again.folder == first.folder
-    assert again.provenance.blocks_computed == 0
-
-
 def test_trials_of_an_object_are_never_taken_for_those_of_another(toy):
     told = io.StringIO()
     question = ASKED | {"workers": None}
@@ -150,6 +144,10 @@ def test_trials_of_an_object_are_never_taken_for_those_of_another(toy):
         (TOY, {"seeds": (0, -1)}, "-1 is not a seed"),
         (TOY, {"workers": -1}, "the number of workers is -1"),
         (None, {"options": {"wind": "L3"}}, "options build a system, and this one is built"),
+        (TOY, {"margin_pp": 5.0}, "give it with --stop-when"),
+        (TOY, SEQUENTIAL | {"margin_pp": 0.0}, "between 0 and 100"),
+        (TOY, SEQUENTIAL | {"stop_when": "soon"}, "'decided' or 'all-decided'"),
+        (TOY, SEQUENTIAL | {"generalise": "models", "seeds": (0, 1)}, "leave --stop-when or"),
     ],
 )
 def test_what_cannot_be_asked_is_told_in_a_sentence(system, given, says, toy, tmp_path):
@@ -192,9 +190,6 @@ def test_the_command_line_leaves_the_same_record(run):
     assert record == (run.folder / "record.json").read_text()
 
 
-SEQUENTIAL = {**ASKED, "scenes": 60, "stop_when": "decided"}
-
-
 @pytest.fixture(scope="module")
 def early(tmp_path_factory) -> faultpath.Run:
     place = tmp_path_factory.mktemp("early") / "run"
@@ -229,17 +224,3 @@ def test_a_sequential_audit_without_an_end_takes_all(tmp_path):
     record = faultpath.audit(TOY, folder=tmp_path / "run", **asked).record
     assert (record.stopped.scenes, record.stopped.reached) == (6, False)
     assert record.headline.startswith("Too few scenes")
-
-
-@pytest.mark.parametrize(
-    ("changed", "words"),
-    [
-        ({"stop_when": None, "margin_pp": 5.0}, "give it with --stop-when"),
-        ({"margin_pp": 0.0}, "between 0 and 100"),
-        ({"stop_when": "soon"}, "'decided' or 'all-decided'"),
-        ({"generalise": "models", "seeds": (0, 1)}, "leave --stop-when or"),
-    ],
-)
-def test_a_rule_that_cannot_be_is_refused(changed, words, tmp_path):
-    with pytest.raises(faultpath.UserError, match=words):
-        faultpath.audit(TOY, folder=tmp_path / "run", **{**SEQUENTIAL, **changed})

@@ -6,7 +6,8 @@ import shutil
 from pathlib import Path
 
 import pytest
-from toy_audits import ROOT, command
+from cli_runs import faultpath as command
+from toy_audits import ROOT
 
 import faultpath
 from faultpath.core.errors import UserError

@@ -2,13 +2,13 @@
 
 import os
 import signal
-import socket
 from collections.abc import Callable, Iterator
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import pytest
+from no_files import THINGS
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import locked
@@ -56,20 +56,6 @@ READERS: dict[str, tuple[str, Read]] = {
 """By what it reads: the name of the file, and the reader."""
 
 
-def _socket(path: Path) -> None:
-    with socket.socket(socket.AF_UNIX) as endpoint, pytest.MonkeyPatch.context() as patch:
-        patch.chdir(path.parent)  # the path of a socket may be a hundred bytes long
-        endpoint.bind(path.name)
-
-
-THINGS: dict[str, Callable[[Path], Any]] = {
-    "pipe": os.mkfifo,
-    "socket": _socket,
-    "device": lambda path: path.symlink_to("/dev/zero"),
-    "folder": lambda path: path.mkdir(),
-}
-
-
 @pytest.fixture(autouse=True)
 def _in_time() -> Iterator[None]:
     """End what would wait for ever."""
@@ -96,7 +82,7 @@ def test_what_is_no_file_is_refused_in_one_sentence(
     with pytest.raises((UserError, Unreadable)) as caught:
         read(path)
     assert "\n" not in str(caught.value)
-    assert path.exists() or thing == "socket"
+    assert path.exists()
 
 
 def test_the_lock_of_a_folder_is_a_file(tmp_path: Path) -> None:

@@ -1,14 +1,12 @@
 """Files are whole or absent, replace files alone, and one process at a time writes them."""
 
 import os
-import socket
-import stat
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from no_files import THINGS
 
 from faultpath.core.errors import UserError
 from faultpath.core.files import atomic
@@ -54,27 +52,6 @@ def test_the_lock_of_a_killed_process_is_free(tmp_path):
         with locked(tmp_path, kill):
             assert process.wait() < 0
     assert f"(id {process.pid}) works in {tmp_path}" in told[0]
-
-
-def _socket(path: Path) -> None:
-    with socket.socket(socket.AF_UNIX) as endpoint, pytest.MonkeyPatch.context() as patch:
-        patch.chdir(path.parent)  # the path of a socket may be a hundred bytes long
-        endpoint.bind(path.name)
-
-
-def _device(path: Path) -> None:
-    try:
-        os.mknod(path, 0o600 | stat.S_IFCHR, os.makedev(1, 3))
-    except PermissionError:
-        pytest.skip("only root makes devices")
-
-
-THINGS: dict[str, Callable[[Path], None]] = {
-    "a pipe": os.mkfifo,
-    "a socket": _socket,
-    "a device": _device,
-    "a folder": Path.mkdir,
-}
 
 
 @pytest.mark.parametrize("linked", [False, True], ids=["itself", "linked"])

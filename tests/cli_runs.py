@@ -14,9 +14,9 @@ from unittest.mock import patch
 
 from faultpath.cli.main import main
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[1]
 TOY = f"{ROOT / 'examples' / 'toy.py'}:create"
-HERE = Path(__file__).resolve().parent
+SYSTEMS = ROOT / "tests" / "cli" / "systems"
 COMMAND = [sys.executable, "-c", "from faultpath.cli.main import main; main()"]
 
 
