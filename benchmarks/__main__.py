@@ -21,8 +21,8 @@ from faultpath_quadrotor import native
 
 import faultpath
 from benchmarks import page
-from benchmarks.results import ROOT, Machine, Record, Results, load, record, save
-from benchmarks.rows import ELSEWHERE, ROWS, SIDES, Row
+from benchmarks.results import ROOT, TIMES, Machine, Record, Results, load, record, save
+from benchmarks.rows import ELSEWHERE, ONCE, ROWS, SIDES, Row
 from faultpath.run.execution.provenance import checkout, processor
 
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
@@ -49,9 +49,16 @@ def timed(side: str, loops: int) -> tuple[float, int, str]:
             write = [sys.executable, "-m", "benchmarks.peers.batched", problem]
             subprocess.run(write, cwd=ROOT, check=True)
             environment = {**environment, "FAULTPATH_PROBLEM": problem}
-        command = [python, "-m", "benchmarks.side", where, "--processes=1", "--values=3"]
-        command += ["--warmups=1", "--min-time=0.1", f"--loops={loops}", f"--output={output}"]
-        command += ["--quiet", "--copy-env", f"--affinity={max(os.sched_getaffinity(0))}"]
+        often = ["--values=3", "--warmups=1", "--min-time=0.1", f"--loops={loops}"]
+        if side in ONCE:
+            often = ["--values=1", "--warmups=0", "--loops=1"]
+        command = [python, "-m", "benchmarks.side", where, "--processes=1", *often]
+        command += [
+            f"--output={output}",
+            "--quiet",
+            "--copy-env",
+            f"--affinity={max(os.sched_getaffinity(0))}",
+        ]
         done = subprocess.run(
             command,
             cwd=ROOT,
@@ -65,7 +72,10 @@ def timed(side: str, loops: int) -> tuple[float, int, str]:
         bench = pyperf.Benchmark.load(str(output))
     metadata = bench.get_metadata()
     loops = bench.get_total_loops() // bench.get_nvalue()
-    return float(metadata["amount"]) / bench.median(), loops, metadata.get("note", "")
+    note = metadata.get("note", "")
+    if side in ONCE:
+        note = f"{page.number(metadata['mem_max_rss'] / 2**30)} GB of memory"
+    return float(metadata["amount"]) / bench.median(), loops, note
 
 
 def measure(rows: Sequence[Row], rounds: int) -> list[Record]:
@@ -94,10 +104,10 @@ def _record(
         if side in missing:
             return Record(name=row.name, unit=row.unit, target=row.target, note=missing[side])
     ours, peer = (rates.get(side, []) for side in (row.ours, row.peer))
-    if row.unit == "ms":
-        ours, peer = ([1e3 / rate for rate in side] for side in (ours, peer))
+    if row.unit in TIMES:
+        ours, peer = ([TIMES[row.unit] / rate for rate in side] for side in (ours, peer))
     measured = record(row.name, row.unit, ours, peer, row.peer, row.target)
-    return measured.model_copy(update={"note": notes.get(row.peer, "")})
+    return measured.model_copy(update={"note": notes.get(row.peer or row.ours, "")})
 
 
 def describe() -> Machine:

@@ -1,125 +1,163 @@
-"""Time and memory of whole audits, beside the trials themselves; it shows them and keeps nothing.
+"""What faultpath adds to trials, beside a bare loop, and what it takes for very many of them."""
 
-python -m benchmarks.cost arm [--rounds N]      an audit of a two-link arm, and the same trials in a
-                                                bare loop
-python -m benchmarks.cost toy [--scenes N ...]  commands that audit the toy in so many scenes
-"""
-
-import argparse
-import os
-import statistics
-import subprocess
-import sys
-import tempfile
-import time
+import csv
 from collections.abc import Callable
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 
 import faultpath
 from benchmarks import two_link
-from benchmarks.results import ROOT
-from benchmarks.side import check_same
+from benchmarks.many_scenes import SUCCESS
+from benchmarks.results import ROOT, TAPS
+from benchmarks.side import Side, check_same
+from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.core.files.parquet import read_table
+from faultpath.core.streams import generator
+from faultpath.faults import resolve
+from faultpath.loop import Taps
 
-_SCENES, _FACTOR = 20, 0.5
-_ARMS = (
+SCENES, FACTOR, SCENE = 20, 0.5, "seed/1000"
+JUDGED, AUDITED = 10_000, 10_000
+"""Scenes of the trials that are judged, and of the toy."""
+_PAYLOADS = (
     (1.0, 1.0),
-    (1.0, _FACTOR),
-    (_FACTOR, 1.0),
-    (_FACTOR, _FACTOR),
+    (1.0, FACTOR),
+    (FACTOR, 1.0),
+    (FACTOR, FACTOR),
     (None, 1.0),
-    (None, _FACTOR),
+    (None, FACTOR),
 )
-"""Payload of observer and controller in each arm of the audit; see `two_link.bare`."""
+"""Payload of observer and controller in each treatment of the audit; see `two_link.bare`."""
 _LIBRARY = 'tuple(SceneRef(f"cart/{i:03d}", i) for i in range(100))'
 
 
-def _bare() -> list[list[float]]:
-    scenes = [scene.id for scene in two_link.create().library("held-out").scenes[:_SCENES]]
-    return [[two_link.bare(scene, *payloads) for scene in scenes] for payloads in _ARMS]
+def one_scene() -> Side:
+    """One scene of the arm, in a block of its own, under the shared fault; the unit is a step."""
+    return Side(_one_scene, two_link.STEPS)
+
+
+def bare_scene() -> Side:
+    """The same trial in a bare loop."""
+    check_same(_one_scene(), two_link.bare(SCENE, FACTOR, FACTOR), 1e-9)
+    return Side(lambda: two_link.bare(SCENE, FACTOR, FACTOR), two_link.STEPS)
+
+
+_SYSTEM = two_link.create()
+
+
+def _one_scene() -> float:
+    variant = _SYSTEM.variants["calibrated"]
+    faults = resolve(_SYSTEM.fault(f"payload:scale={FACTOR}"), _SYSTEM.interface)
+    taps = Taps(
+        _SYSTEM.interface,
+        faults,
+        scenes=(SCENE,),
+        dt_s=_SYSTEM.control_dt_s,
+        bindings=variant.bindings,
+        readers=variant.readers,
+    )
+    (outcome,) = _SYSTEM.run(variant.name, [SCENE], taps, 0)
+    if len(taps.receipts().taps) != TAPS:
+        raise RuntimeError(f"the arm has {len(taps.receipts().taps)} taps: correct TAPS")
+    missed_rad = outcome.metrics["missed_rad"]
+    assert missed_rad is not None
+    return missed_rad
+
+
+def arm_audit() -> Side:
+    """An audit of the arm in one process, with its report; the unit is a trial."""
+    return Side(_audited, SCENES * len(_PAYLOADS))
+
+
+def bare_trials() -> Side:
+    """The trials of that audit in a bare loop."""
+    scenes = [scene.id for scene in _SYSTEM.library("held-out").scenes[:SCENES]]
+
+    def work() -> list[list[float]]:
+        return [[two_link.bare(scene, *payloads) for scene in scenes] for payloads in _PAYLOADS]
+
+    check_same(sorted(work()), sorted(_audited()), 1e-6)
+    return Side(work, SCENES * len(_PAYLOADS))
 
 
 def _audited() -> list[list[float]]:
-    with tempfile.TemporaryDirectory() as folder:
-        place = Path(folder) / "run"
-        faultpath.audit(
+    """Audit the arm, and return how far from its goal it ended, by treatment and scene."""
+    outcomes = _in_folder(
+        lambda folder: faultpath.audit(
             ROOT / "benchmarks" / "two_link.py",
             baseline="calibrated",
             repair="nominal",
-            fault=f"payload:scale={_FACTOR}",
-            scenes=_SCENES,
+            fault=f"payload:scale={FACTOR}",
+            scenes=SCENES,
             workers=0,
-            folder=place,
+            folder=folder / "run",
             progress=False,
         )
-        missed: Any = read_table((place / "outcomes.parquet").read_bytes()).column("missed_rad")
-    return missed.to_numpy().reshape(-1, _SCENES).tolist()
+    )
+    missed: Any = read_table(outcomes).column("missed_rad")
+    treatments = missed.to_numpy().reshape(-1, SCENES)
+    return np.unique(treatments.round(9), axis=0).tolist()
 
 
-def _timed(work: Callable[[], list[list[float]]]) -> tuple[float, list[list[float]]]:
-    began = time.perf_counter()
-    numbers = work()
-    return time.perf_counter() - began, numbers
+def _in_folder(run: Callable[[Path], object]) -> bytes:
+    """Do what writes a run into a new folder, and return the table of its outcomes."""
+    with TemporaryDirectory() as name:
+        run(Path(name))
+        return (Path(name) / "run" / "outcomes.parquet").read_bytes()
 
 
-def arm(rounds: int) -> None:
-    """Print the time of an audit in this process as a multiple of its bare trials."""
-    ratios: list[float] = []
-    for number in range(1, rounds + 1):
-        bare_s, alone = _timed(_bare)
-        audit_s, audited = _timed(_audited)
-        ours = sorted(set(map(tuple, np.round(audited, 9).tolist())))
-        check_same(sorted(map(tuple, np.round(alone, 9).tolist())), ours, 1e-6)
-        ratios.append(audit_s / bare_s)
-        print(f"round {number}: audit {audit_s:.2f} s, bare loop {bare_s:.2f} s", flush=True)
-    print(f"An audit takes {statistics.median(ratios):.2f} times its trials in a bare loop.")
+def judged() -> Side:
+    """`judge` of a CSV file with a row a trial: two versions, four conditions; with its report."""
+    folder = TemporaryDirectory()
+    results, draws = Path(folder.name) / "results.csv", generator("benchmark-judge", "all", 0)
+    conditions = {CORRECT: CORRECT, "observer": "observer", "controller": "observer"}
+    with results.open("w", encoding="utf-8") as file:
+        rows = csv.writer(file)
+        rows.writerow(("variant", "condition", "scene", "success"))
+        for condition, alike in (conditions | {SHARED: SHARED}).items():
+            for variant, rate in zip(("repair", "baseline"), SUCCESS[alike], strict=True):
+                ends = draws.random(JUDGED) < rate
+                rows.writerows((variant, condition, i, int(end)) for i, end in enumerate(ends))
+
+    def work() -> None:
+        _in_folder(
+            lambda new: faultpath.judge(
+                Path(folder.name) / "results.csv",
+                baseline="baseline",
+                repair="repair",
+                nominal=CORRECT,
+                folder=new / "run",
+                progress=False,
+            )
+        )
+
+    return Side(work)
 
 
-def toy(scenes: int) -> None:
-    """Print time, memory and size of a command that audits the toy in so many scenes."""
+def many_scenes() -> Side:
+    """An audit of the toy in very many scenes, in one process, with its report."""
     text = (ROOT / "examples" / "toy.py").read_text("utf-8")
     if _LIBRARY not in text:
-        sys.exit("examples/toy.py makes its library otherwise: correct benchmarks/cost.py")
-    with tempfile.TemporaryDirectory() as folder:
-        system, run = Path(folder) / "toy.py", Path(folder) / "run"
-        system.write_text(text.replace(_LIBRARY, _LIBRARY.replace("100", str(scenes))), "utf-8")
-        command = [sys.executable, "-m", "faultpath", "audit", f"{system}:create"]
-        command += ["--baseline", "calibrated", "--repair", "blind", "--library", "carts"]
-        command += ["--fault", "gain:scale=0.6", "--workers", "2", "--out", str(run)]
-        began = time.perf_counter()
-        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        _, status, usage = os.wait4(process.pid, 0)
-        taken = time.perf_counter() - began
-        if status:
-            sys.exit(f"the audit ended with {os.waitstatus_to_exitcode(status)}")
-        files = [file for file in run.rglob("*") if file.is_file()]
-        size = sum(file.stat().st_size for file in files) / 2**20
-        report = (run / "report.html").stat().st_size / 2**20
-    print(
-        f"toy, {scenes} scenes: {taken:.0f} s, {usage.ru_maxrss / 2**20:.2f} GB, report "
-        f"{report:.0f} MB, folder {size:.0f} MB",
-        flush=True,
-    )
+        raise RuntimeError("examples/toy.py makes its library otherwise: correct _LIBRARY")
+    folder = TemporaryDirectory()
+    system = Path(folder.name) / "toy.py"
+    system.write_text(text.replace(_LIBRARY, _LIBRARY.replace("100", str(AUDITED))), "utf-8")
 
+    def work() -> None:
+        _in_folder(
+            lambda new: faultpath.audit(
+                Path(folder.name) / "toy.py",
+                baseline="calibrated",
+                repair="blind",
+                fault="gain:scale=0.6",
+                library="carts",
+                workers=0,
+                folder=new / "run",
+                progress=False,
+            )
+        )
 
-def main() -> None:
-    """Measure what the command line names."""
-    parser = argparse.ArgumentParser(
-        prog="benchmarks.cost", description=(__doc__ or "").split("\n")[0]
-    )
-    parser.add_argument("what", choices=("arm", "toy"))
-    parser.add_argument("--rounds", type=int, default=5)
-    parser.add_argument("--scenes", type=int, nargs="+", default=[1000, 10_000])
-    options = parser.parse_args()
-    if options.what == "arm":
-        arm(options.rounds)
-    else:
-        for scenes in options.scenes:
-            toy(scenes)
-
-
-if __name__ == "__main__":
-    main()
+    return Side(work)

@@ -8,14 +8,23 @@ from collections.abc import Iterator, Sequence
 from statistics import median
 from typing import Any
 
-from benchmarks.results import DEVICE, EARLIER, WAITS, Record, load, record
+from benchmarks.results import (
+    DEVICE,
+    EARLIER,
+    LOOP_STEPS,
+    TAPS,
+    VEHICLE_STEPS,
+    WAITS,
+    Record,
+    load,
+    record,
+)
 from benchmarks.waits import STEPS, TESTS
 from faultpath.analyses.tables import MISSING, Line, Table, line
 from faultpath.analyses.tables.markdown import grid
 
 _COLUMNS = ("faultpath", "compared with", "ratio")
-_STEPS = "vehicle-steps/s"
-"""Unit of the plant's rows: shown as a time, without a ratio, since the models differ."""
+_A_STEP = {VEHICLE_STEPS: "µs a vehicle and step", LOOP_STEPS: "µs a step"}
 
 
 def all_rows() -> str:
@@ -26,7 +35,7 @@ def all_rows() -> str:
 def rows(records: Sequence[Record]) -> str:
     """Return the table of all rows and, below it, why some were not measured."""
     table = grid(Table(columns=_COLUMNS, lines=tuple(map(_line, records))))
-    notes = [f"- {record.name}: {record.note}" for record in records if record.note]
+    notes = [f"- {record.name}: {note}" for record in records for note in _notes(record)]
     return "\n\n".join([table, *(["\n".join(notes)] if notes else [])])
 
 
@@ -75,10 +84,22 @@ def _line(record: Record) -> Line:
     if record.ours is None:
         return line(record.name, MISSING, MISSING, MISSING)
     ours, peer, unit, ratio = record.ours, record.peer, record.unit, _ratio(record)
-    if unit == _STEPS and peer:
-        ours, peer, unit, ratio = 1e6 / ours, 1e6 / peer, "µs a vehicle and step", ""
+    if unit in _A_STEP and peer:
+        ours, peer = 1e6 / ours, 1e6 / peer
+    if unit == VEHICLE_STEPS:  # the models differ, so there is no ratio
+        ratio = ""
+    unit = _A_STEP.get(unit, unit)
     against = "" if peer is None else f"{number(peer)} ({record.peer_name})"
     return line(record.name, f"{number(ours)} {unit}", against, ratio)
+
+
+def _notes(record: Record) -> Iterator[str]:
+    """Yield what is said of a row below the table."""
+    if record.note:
+        yield record.note
+    if record.unit == LOOP_STEPS and record.ours and record.peer:
+        each = (1e6 / record.ours - 1e6 / record.peer) / TAPS
+        yield f"{number(each)} µs a tap and step more than the bare loop, at {TAPS} taps"
 
 
 def _ratio(record: Record) -> str:

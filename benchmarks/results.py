@@ -16,6 +16,14 @@ DEVICE = ROOT / "benchmarks" / "device.json"
 WAITS = ROOT / "benchmarks" / "waits.json"
 
 
+TIMES = {"ms": 1e3, "s": 1.0}
+"""Units of rows that show the time of a call and not a rate, and how many make a second."""
+VEHICLE_STEPS, LOOP_STEPS = "vehicle-steps/s", "steps/s"
+"""Units of rows that the page shows as times a step."""
+TAPS = 10
+"""Places at which the modules and the plant of the two-link arm read."""
+
+
 class _Frozen(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
@@ -60,8 +68,8 @@ def record(
     peer_name: str = "",
     target: Target | None = None,
 ) -> Record:
-    """Return the record of some rounds, as rates or, where the unit is `ms`, as times."""
-    fast = (lambda a, b: b / a) if unit == "ms" else (lambda a, b: a / b)
+    """Return the record of some rounds, as rates or, where the unit is one of `TIMES`, as times."""
+    fast = (lambda a, b: b / a) if unit in TIMES else (lambda a, b: a / b)
     ratios = [fast(a, b) for a, b in zip(ours, peer, strict=True)] if peer else []
     ratio = median(ratios) if ratios else None
     value = ratio if target is not None and target.of == "ratio" else median(ours)

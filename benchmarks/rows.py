@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from faultpath_quadrotor.native import library
 
-from benchmarks.results import Target
+from benchmarks.results import LOOP_STEPS, VEHICLE_STEPS, Target
 
 _XLA = "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
 _PORTABLE = {library.VARIABLE: library.PORTABLE}
@@ -39,8 +39,16 @@ SIDES: Mapping[str, tuple[str, Mapping[str, str]]] = {
     "scipy.stats.bootstrap": ("benchmarks.peers.scipy_side:percentile", {}),
     "100,000 scenes": ("benchmarks.many_scenes:many", {}),
     "10,000 scenes": ("benchmarks.many_scenes:few", {}),
+    "one scene": ("benchmarks.cost:one_scene", {}),
+    "bare loop, one scene": ("benchmarks.cost:bare_scene", {}),
+    "audit": ("benchmarks.cost:arm_audit", {}),
+    "bare loop": ("benchmarks.cost:bare_trials", {}),
+    "judge": ("benchmarks.cost:judged", {}),
+    "audit of 10,000 scenes": ("benchmarks.cost:many_scenes", {}),
 }
 """Function that builds each side, as `module:function`, and its environment."""
+ONCE = {"judge", "audit of 10,000 scenes"}
+"""Sides that take seconds: a round times them once, and their memory is told."""
 ELSEWHERE = {"jax-mppi": ".venv-bench-jax/bin/python"}
 """Pythons of the sides that need one of their own; they get the problem as a file."""
 
@@ -64,7 +72,6 @@ def _at_most(value: float) -> Target:
     return Target(of="ours", sense="at most", value=value)
 
 
-_STEPS = "vehicle-steps/s"
 ROWS = (
     Row("Fused rollout, portable", "replans/s", "fused rollout", "portable"),
     Row("Fused rollout, torch.mm", "replans/s", "fused rollout", "torch.mm", _ratio(0.75)),
@@ -74,10 +81,14 @@ ROWS = (
     Row("Fused replan, jax-mppi", "replans/s", "fused replan", "jax-mppi"),
     Row("Portable replan, pytorch_mppi", "replans/s", "portable replan", "pytorch_mppi"),
     Row("One vehicle, depth image encoded and queried", "ms", "one vehicle", target=_at_most(5.0)),
-    Row("Full plant, RotorPy", _STEPS, "plant", "RotorPy"),
-    Row("Full plant, MuJoCo", _STEPS, "plant", "MuJoCo"),
-    Row("Portable plant, RotorPy", _STEPS, "portable plant", "RotorPy"),
+    Row("Full plant, RotorPy", VEHICLE_STEPS, "plant", "RotorPy"),
+    Row("Full plant, MuJoCo", VEHICLE_STEPS, "plant", "MuJoCo"),
+    Row("Portable plant, RotorPy", VEHICLE_STEPS, "portable plant", "RotorPy"),
     Row("Depth image 64 x 36", "images/s", "rendering", "mj_multiRay", _ratio(1.0)),
     Row("Bootstrap with its draw", "ms", "bootstrap", "scipy.stats.bootstrap", _at_most(20.0)),
     Row("Tests of 100,000 scenes", "scenes/s", "100,000 scenes", "10,000 scenes", _ratio(0.5)),
+    Row("Loop, one scene at a time", LOOP_STEPS, "one scene", "bare loop, one scene"),
+    Row("Audit of 20 scenes, with its report", "trials/s", "audit", "bare loop"),
+    Row("judge of 80,000 trials, with its report", "s", "judge", target=_at_most(4.0)),
+    Row("Audit of 10,000 scenes, with its report", "s", "audit of 10,000 scenes"),
 )

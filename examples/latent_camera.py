@@ -26,7 +26,6 @@ import numpy as np
 import torch
 from latent_camera_pictures import DOOR, SIDE, WALL, Rectified, Rooms, picture
 from torch import nn
-from torch.nn import functional
 
 from faultpath import UserError, generator
 from faultpath.learning import Schedule, Windows, fit, load, matched, uncertainty_training
@@ -55,8 +54,8 @@ CAMERA = ("exposure", "gamma", "shift", "smear")
 # --- model ---
 def edges_of(pictures):
     """Return how steep the pictures are, relative to their mean steepness: no exposure is left."""
-    across = functional.pad(pictures, (1, 1, 0, 0), mode="replicate").diff(n=1, dim=3)
-    down = functional.pad(pictures, (0, 0, 1, 1), mode="replicate").diff(n=1, dim=2)
+    across = nn.functional.pad(pictures, (1, 1, 0, 0), mode="replicate").diff(n=1, dim=3)
+    down = nn.functional.pad(pictures, (0, 0, 1, 1), mode="replicate").diff(n=1, dim=2)
     steep = (across[..., 1:] ** 2 + down[..., 1:, :] ** 2 + 1e-8).sqrt()
     return 0.2 * steep / steep.mean(dim=(1, 2, 3), keepdim=True)
 
@@ -102,10 +101,10 @@ def latent_loss(output, actions):
     covariance = centred.T @ centred / (len(flat) - 1)
     spread = (covariance.diagonal() + 1e-4).sqrt()
     apart = (covariance - covariance.diagonal().diag()).square().sum() / LATENT
-    ahead = functional.mse_loss(model.imagine(latents[:, 0], actions), latents[:, 1:])
+    ahead = nn.functional.mse_loss(model.imagine(latents[:, 0], actions), latents[:, 1:])
     recognised = model.inverse(torch.cat([latents[:, :-1], latents[:, 1:]], dim=2))
     narrow = (1 - spread).clamp(min=0).mean()
-    return 25 * ahead + 25 * narrow + apart + functional.mse_loss(recognised, actions)
+    return 25 * ahead + 25 * narrow + apart + nn.functional.mse_loss(recognised, actions)
 
 
 # --- modules ---

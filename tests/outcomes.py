@@ -12,10 +12,10 @@ def outcome(
     """Return an outcome that pairs with any other of its scene and seed; a number names a scene."""
     if isinstance(scene, int):
         scene = f"s{scene:03d}"
-    hashes = {"initial_hash": f"i-{scene}", "disturbance_hash": f"d-{scene}"}
-    hashes["planner_noise_hash"] = f"n-{scene}-{seed}"
-    time_s = 0.0 if status is Status.FAILED else 5.0
-    return Outcome(**{"scene": scene, "status": status, "time_s": time_s} | hashes | fields)
+    usual: dict[str, Any] = {"initial_hash": f"i-{scene}", "disturbance_hash": f"d-{scene}"}
+    usual["planner_noise_hash"] = f"n-{scene}-{seed}"
+    usual["time_s"] = 0.0 if status is Status.FAILED else 5.0
+    return Outcome(scene=scene, status=status, **usual | fields)
 
 
 def trial(

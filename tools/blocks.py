@@ -1,24 +1,20 @@
-"""Stored runs and studies that documents take their numbers from, and how these become text."""
+"""Stored runs and studies that documents take their numbers from."""
 
 import json
 import shutil
 import sys
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cache
-from io import StringIO
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from pydantic import BaseModel, ValidationError
-from rich.console import Console, RenderableType
 
 from faultpath.analyses.map.record import MapRecord
 from faultpath.analyses.record import DecisionRecord
 from faultpath.analyses.scan.record import ScanRecord
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.tables import Entry, Line, Table
-from faultpath.analyses.tables.markdown import grid
+from faultpath.analyses.tables.escapes import html as escape
 from faultpath.api.folders import (
     MADE_FROM,
     MAP,
@@ -63,6 +59,30 @@ class Picture(NamedTuple):
     name: str
     text: str
     svg: str
+    still: str = ""
+    """What a film shows to readers who prefer no motion."""
+    caption: str = ""
+
+    @property
+    def files(self) -> dict[Path, str]:
+        """What its files hold, by their path."""
+        files = {IMAGES / self.name: self.svg, IMAGES / self._name_of_still: self.still}
+        return {path: content for path, content in files.items() if content}
+
+    @property
+    def shown(self) -> str:
+        """What a document shows of it."""
+        if not self.still:
+            return f"![{self.text}]({{images}}/{self.name})"
+        still = (
+            f'media="(prefers-reduced-motion: reduce)" srcset="{{images}}/{self._name_of_still}"'
+        )
+        image = f'<img alt="{escape(self.text)}" src="{{images}}/{self.name}">'
+        return f"<picture>\n<source {still}>\n{image}\n</picture>\n\n*{self.caption}*"
+
+    @property
+    def _name_of_still(self) -> str:
+        return self.name.replace(".svg", "-still.svg")
 
 
 class Repeats(BaseModel):
@@ -115,15 +135,15 @@ class Run:
     @property
     def flown(self) -> str:
         """By which version it was run, and how many of its trials the code that is here repeats."""
-        run, repeats = self.provenance, self.repeats
-        commit = f" (`{run.commit[:12]}`)" if run.commit else ""
-        text = f"Run by faultpath {run.faultpath_version}{commit}"
+        code, repeats = self.provenance.code, self.repeats
+        commit = f" (`{code.commit[:12]}`)" if code.commit else ""
+        text = f"Run by faultpath {code.faultpath_version}{commit}"
         return f"{text}; {repeats}." if repeats else f"{text}."
 
     @property
     def processor(self) -> str:
         """On which processor it was flown."""
-        return self.provenance.processor.replace("(R)", "")
+        return self.provenance.machine.processor.replace("(R)", "")
 
 
 def kind_of(folder: Path) -> str:
@@ -169,46 +189,3 @@ def figures_of(study: str, file: str) -> Any:
     if not path.is_file():
         raise Wrong(f"{path.relative_to(ROOT)} is missing: {study}/README.md says how it was made")
     return json.loads(path.read_text("utf-8"))
-
-
-def effect_entry(effect: Sequence[float]) -> Entry:
-    """Return a difference in percentage points with its interval, bold where it is significant.
-
-    `effect` is value, low end, high end, and the sign that is significant, or 0.
-    """
-    value, low, high, sign = effect
-    return Entry(text=difference(value, low, high, bold=False), detected=bool(sign))
-
-
-def difference(value: float, low: float, high: float, *, bold: bool) -> str:
-    """Return a difference with its interval, in Markdown."""
-    text = wording.signed(value, 1)
-    ends = ", ".join(wording.signed(end, 1) for end in (low, high))
-    return f"{f'**{text}**' if bold else text} [{ends}]"
-
-
-def words_grid(corner: str, columns: Sequence[str], lines: Sequence[Line]) -> str:
-    """Return a table in Markdown whose columns all stand to the left."""
-    heads = tuple(columns)
-    return grid(Table(corner=corner, columns=heads, words=heads, lines=tuple(lines)))
-
-
-def pipes(
-    columns: Sequence[str], rows: Iterable[Sequence[str]], words: Collection[int] = (0,)
-) -> str:
-    """Return a table of cells that are Markdown already; columns of `words` stand to the left."""
-    sides = [":--" if index in words else "--:" for index in range(len(columns))]
-    return "\n".join(f"| {' | '.join(row)} |" for row in (columns, sides, *rows))
-
-
-def printed(shown: RenderableType) -> str:
-    """Return `shown` as a terminal of 100 columns prints it."""
-    console = Console(file=StringIO(), width=100, record=True, color_system=None)
-    console.print(shown)
-    lines = (line.rstrip() for line in console.export_text().splitlines())
-    return fence("text", "\n".join(lines).strip("\n"))
-
-
-def fence(info: str, body: str) -> str:
-    """Return a fenced block."""
-    return f"```{info}\n{body}\n```"

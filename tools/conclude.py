@@ -1,6 +1,5 @@
 """Conclude stored reference runs anew: the same trials, decided by the code that is here."""
 
-import json
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -16,8 +15,6 @@ from faultpath.analyses.decide import decide
 from faultpath.analyses.map.lattice import UNITS
 from faultpath.analyses.map.record import MapRecord
 from faultpath.analyses.map.study import plan_map
-from faultpath.analyses.model import Condition
-from faultpath.analyses.question import Question
 from faultpath.analyses.record import DecisionRecord
 from faultpath.analyses.scan.decide import concluded
 from faultpath.analyses.scan.errors import Scanned
@@ -29,35 +26,33 @@ from faultpath.api.runs import open_run
 from faultpath.report.map import table_markdown
 from faultpath.run import Deliveries, SystemSpec, Trials, load_system
 from faultpath.run.provenance import RunProvenance
-from faultpath.run.question import MapQuestion
 from faultpath.run.store.folder import OUTCOMES, TRACES, read_outcomes, seal
 from faultpath.run.store.tables import decode_outcomes, decode_traces, encode_traces
 from faultpath.system import library_of
 
 
-def conclude_all(tell: Callable[[str], None]) -> None:
+def conclude_all(say: Callable[[str], None]) -> None:
     """Decide every reference run anew and write its record, table and page; then the paper's."""
     for folder in sorted(path.parent for path in REFERENCE.glob(f"*/{RECORD}")):
-        before = json.loads((folder / RECORD).read_bytes())
+        before = parsed(folder / RECORD, DecisionRecord)
         record = audit(folder)
-        tell(f"{folder.name}: {before.get('headline')}\n    now: {record.headline}")
+        say(f"{folder.name}: {before.headline}\n    now: {record.headline}")
     for folder in sorted(path.parent for path in REFERENCE.glob(f"*/{MAP}")):
-        tell(f"{folder.name}: {reversal_map(folder).headline}")
+        say(f"{folder.name}: {reversal_map(folder).headline}")
     for folder in sorted(path.parent for path in REFERENCE.glob(f"*/{SCAN}")):
-        tell(f"{folder.name}: {scan(folder).headline}")
+        say(f"{folder.name}: {scan(folder).headline}")
     for line in paper(RUN, PLACE):
-        tell(f"the paper: {line}")
+        say(f"the paper: {line}")
 
 
 def audit(folder: Path) -> DecisionRecord:
     """Decide a stored audit anew and write its record and pages."""
-    before = json.loads((folder / RECORD).read_bytes())
-    question = Question.model_validate(before["question"])
-    conditions = [Condition.model_validate(condition) for condition in before["conditions"]]
+    before = parsed(folder / RECORD, DecisionRecord)
     outcomes = read_outcomes(folder / OUTCOMES)
-    findings = tuple(before.get("findings", ()))
-    repeats = before.get("invalid") != "unrepeatable"
-    record = decide(question, conditions, outcomes, findings, repeats)
+    repeats = before.invalid != "unrepeatable"
+    record = decide(
+        before.question, before.facts, before.conditions, outcomes, before.findings, repeats
+    )
     (folder / RECORD).write_text(as_text(record), "utf-8")
     _keep_examples(folder, record, outcomes)
     _reseal(folder)
@@ -67,8 +62,8 @@ def audit(folder: Path) -> DecisionRecord:
 
 def _keep_examples(folder: Path, record: DecisionRecord, trials: Trials) -> None:
     """Leave out the traces of all trials but those of the scenes that the report begins with."""
-    shown = shown_first(record, trials)
     traces = decode_traces((folder / TRACES).read_bytes())
+    shown = shown_first(record, trials, traces)
     kept = {at: trace for at, trace in traces.items() if (at.scene, at.seed) in shown}
     if len(kept) < len(traces):
         examples = decode_outcomes((folder / OUTCOMES).read_bytes(), kept)
@@ -78,20 +73,17 @@ def _keep_examples(folder: Path, record: DecisionRecord, trials: Trials) -> None
 def reversal_map(folder: Path) -> MapRecord:
     """Decide a reference map anew from its trials; write its record and table."""
     before = load(folder.name).record
-    question = before.question
-    place = str(ROOT / question.system) if ".py:" in question.system else question.system
+    question, facts = before.question, before.facts
+    place = str(ROOT / facts.system) if ".py:" in facts.system else facts.system
     spec = SystemSpec(name=place, options=question.options)
     system = load_system(spec)
-    # What a map was asked is in `question`: the request only makes a plan of this system.
-    same = question.model_dump(include={*MapQuestion.model_fields})
-    request = MapQuestion(**same, scenes=question.n_scenes)
-    plan = plan_map(system, spec, request, library_of(system, question.library))
+    plan = plan_map(system, spec, question, library_of(system, facts.library))
     points = [
-        (round(x / question.up_to * UNITS), round(y / question.up_to * UNITS))
+        (round(x / facts.up_to * UNITS), round(y / facts.up_to * UNITS))
         for x, y in (point.errors for point in before.points)
     ]
     findings = Deliveries(rows=(), findings=before.findings)
-    plan = replace(plan, question=question)
+    plan = replace(plan, facts=facts)
     record = plan.conclude(read_outcomes(folder / OUTCOMES), findings, points)
     (folder / MAP).write_text(record.model_dump_json(indent=1) + "\n", "utf-8")
     (folder / "table.md").write_text(table_markdown(record), "utf-8")
@@ -118,7 +110,7 @@ def scan(folder: Path) -> ScanRecord:
     )
     repeats = before.invalid != "unrepeatable"
     deliveries = Deliveries(rows=(), findings=before.findings, repeats=repeats)
-    record = concluded(before.question, before.ranking, scanned, trials, deliveries)
+    record = concluded(before.question, before.facts, before.ranking, scanned, trials, deliveries)
     (folder / SCAN).write_text(record.model_dump_json(indent=1) + "\n", "utf-8")
     _reseal(folder)
     open_run(folder).report()

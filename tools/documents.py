@@ -8,7 +8,7 @@
     python tools/documents.py --images                 make the pictures too, with Chromium
 
 A block stands between `<!-- begin:KIND:ARGUMENT -->` and `<!-- end:KIND:ARGUMENT -->`, each on a
-line of its own; `BLOCKS` and `PICTURES` list the kinds. `PAGES` are files that are made whole.
+line of its own. Macros of `templates` write most kinds, `BLOCKS` lists all; `PICTURES` are drawn.
 `docs/reference/README.md` says what a reference run is.
 """
 
@@ -19,58 +19,47 @@ import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 
-import carry_blocks
-import found_blocks
-import latent_blocks
-import model_blocks
+import api_blocks
+import comparison
+import film_openpilot
+import film_quadrotor
 import paper_blocks
 import run_blocks
-import state_blocks
-from blocks import IMAGES, REFERENCE, ROOT, RUNS, Picture, Wrong, copied, kind_of, load
+import schema_files
+import studies
+from blocks import IMAGES, REFERENCE, ROOT, RUNS, Picture, Wrong, copied, figures_of, kind_of, load
+from faultpath_paper import central, facts
+from faultpath_paper.report import short, words
 from pictures import digest, made_from, make_images, name_of
+from rendering import macros
 
+from faultpath.analyses.sentences import phrases
+from faultpath.analyses.tables.markdown import block, grid
 from faultpath.run.store.signals import SIGNALS
 
 sys.path.insert(0, str(ROOT))
 from benchmarks import page as performance
 
+NAMES = {
+    "block": block,
+    "central": central,
+    "comparison": comparison,
+    "facts": facts,
+    "figures_of": figures_of,
+    "grid": grid,
+    "load": load,
+    "paper": paper_blocks,
+    "phrases": phrases,
+    "runs": run_blocks,
+    "short": short,
+    "studies": studies,
+    "words": words,
+}
+FILTERS = {"load": load, "between": comparison.between, "success": comparison.success}
+"""What templates use, beside the filters of `rendering`."""
 BLOCKS: Mapping[str, Callable[..., str]] = {
-    "table": run_blocks.table,
-    "headline": run_blocks.headline,
-    "contrast": run_blocks.contrast,
-    "terminal": run_blocks.terminal,
-    "command": run_blocks.command,
-    "picture": run_blocks.picture,
-    "times": run_blocks.times,
-    "map:command": run_blocks.command,
-    "map:said": run_blocks.sentences,
-    "wpilib:pairs": run_blocks.wpilib_pairs,
-    "scan:said": run_blocks.sentences,
-    "scan:command": run_blocks.command,
-    "scan:audits": run_blocks.scan_commands,
-    "code": run_blocks.code,
-    "template": run_blocks.template,
-    "found": found_blocks.table,
-    "audits": found_blocks.audits,
-    "counts": found_blocks.counts,
-    "models": model_blocks.table,
-    "central:answer": paper_blocks.central_answer,
-    "central:table": paper_blocks.central_table,
-    "paper:counts": paper_blocks.counts,
-    "paper:ledger": paper_blocks.ledger,
-    "paper:sizes": paper_blocks.sizes,
-    "paper:apart": paper_blocks.not_confirmed,
-    "paper:facts": paper_blocks.facts_in_short,
-    "paper:origin": paper_blocks.origin,
-    "carry:said": carry_blocks.verdicts,
-    "carry:table": carry_blocks.table,
-    "carry:cost": carry_blocks.cost,
-    "state:reading": state_blocks.reading,
-    "state:effects": state_blocks.effects,
-    "state:success": state_blocks.success,
-    "state:errors": state_blocks.errors,
-    "state:origin": state_blocks.origin,
-    **{f"latent:{part}": function for part, function in latent_blocks.KIND.items()},
+    **macros(NAMES, FILTERS),
+    "api": api_blocks.signatures,
     "performance:machine": performance.machine,
     "performance:rows": performance.all_rows,
     "performance:elsewhere": performance.elsewhere,
@@ -83,12 +72,15 @@ PICTURES: Mapping[str, Callable[..., Picture]] = {
     "map:picture": run_blocks.map_picture_of,
     "scan:picture": run_blocks.scan_picture_of,
     "paper:picture": paper_blocks.picture,
+    "film:quadrotor": film_quadrotor.film,
+    "film:openpilot": film_openpilot.film,
 }
 """Functions that return the picture that a block shows."""
 
 PAGES: Sequence[Callable[[], Mapping[Path, str]]] = (
     paper_blocks.elsewhere,
-    paper_blocks.fact_page,
+    lambda: {paper_blocks.FACTS: BLOCKS["page:facts"]() + "\n"},
+    schema_files.files,
 )
 """Functions that return other files that follow from numbers, by their path."""
 
@@ -120,11 +112,7 @@ def split(name: str) -> tuple[str, list[str]]:
 def fill(name: str, document: Path) -> str:
     """Return the text of the block `name` of a document."""
     kind, words = split(name)
-    if kind in PICTURES:
-        picture = PICTURES[kind](*words)
-        text = f"![{picture.text}]({{images}}/{picture.name})"
-    else:
-        text = BLOCKS[kind](*words)
+    text = PICTURES[kind](*words).shown if kind in PICTURES else BLOCKS[kind](*words)
     folders = {"{docs}": ROOT / "docs", "{images}": IMAGES, "{reference}": REFERENCE}
     for word, folder in folders.items():
         text = text.replace(word, Path(os.path.relpath(folder, document.parent)).as_posix())
@@ -159,8 +147,9 @@ def photographs() -> list[tuple[str, str]]:
 def generated() -> Mapping[Path, str]:
     """Return every file that follows from numbers, by its path."""
     files = {path: filled(path.read_text("utf-8"), path) for path in documents()}
-    drawn = (PICTURES[kind](*words) for kind, words in blocks_shown() if kind in PICTURES)
-    files |= {IMAGES / picture.name: picture.svg for picture in drawn}
+    drawn = (PICTURES[kind](*names) for kind, names in blocks_shown() if kind in PICTURES)
+    for picture in drawn:
+        files |= picture.files
     for page in PAGES:
         files |= page()
     return files
@@ -211,7 +200,7 @@ def take(argument: str) -> None:
     signals = (SIGNALS,) if (source / SIGNALS).is_file() else ()
     copied((*RUNS[kind_of(source)][1], *signals), source, REFERENCE / name)
     load.cache_clear()
-    if load(name).provenance.dirty:
+    if load(name).provenance.code.dirty:
         print(f"{name} was made with uncommitted changes, and the documents will say so.")
 
 

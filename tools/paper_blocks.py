@@ -1,4 +1,4 @@
-"""Blocks, pictures and pages about the shipped reproduction of the paper."""
+"""The shipped reproduction of the paper, for its blocks, pictures and pages."""
 
 import hashlib
 import re
@@ -13,24 +13,15 @@ from faultpath_paper.cells import Setting
 from faultpath_paper.central import (
     CASES,
     ELSEWHERE,
-    QUESTION,
     WEIGHTS,
     Case,
     PrintedEffect,
-    answer,
     case_of,
-    detail,
-    table_of,
 )
-from faultpath_paper.facts import SECTIONS, STANDINGS, counted, facts, listed
 from faultpath_paper.report.page import sweep_plot
-from faultpath_paper.report.short import apart, by_kind, by_subject
-from faultpath_paper.report.words import NON_DETECTION, headline
 
 from faultpath.analyses.model import CORRECT, SHARED
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.tables.escapes import markdown
-from faultpath.analyses.tables.markdown import block, grid
+from faultpath.analyses.sentences import shares, wording
 from faultpath.report.svg import template
 from faultpath.run.store.folder import read_outcomes
 
@@ -64,28 +55,17 @@ def take(folder: Path) -> None:
     load.cache_clear()
 
 
-def central_answer() -> str:
-    """Return the paper's central question and our answer, in words that need no glossary."""
-    cases = _cases()
-    return f"{QUESTION} **{answer(cases)}.** {detail(cases)}"
-
-
-def central_table() -> str:
-    """Return the numbers behind the answer, run by run."""
-    return block(table_of(_cases()))
-
-
-def _cases() -> tuple[Case, ...]:
+def cases() -> tuple[Case, ...]:
     """Return what the shipped run detected, if it was flown on the platform that is here, and what
     reference runs did."""
     own = case_of(load().record)
-    return (*([own] if own and not _former() else []), *_besides())
+    return (*([own] if own and not former() else []), *_besides())
 
 
-def _former() -> str:
+def former() -> str:
     """Return a sentence where the shipped run was flown on another platform than the one here."""
     weights = ROOT / "quadrotor" / "src" / "faultpath_quadrotor" / WEIGHTS
-    if load().provenance.data[WEIGHTS] == hashlib.sha256(weights.read_bytes()).hexdigest():
+    if load().provenance.code.data[WEIGHTS] == hashlib.sha256(weights.read_bytes()).hexdigest():
         return ""
     return "**On a platform before the present one.** "
 
@@ -107,43 +87,20 @@ def _case(run: Run) -> Case:
         PrintedEffect.of(wording.with_interval(effect), effect.significant) for effect in pair
     )
     (moved,) = (change for change in record.changes if change.isolated == _MODULE)
+    (frequency,) = (share for share in record.break_even if share.condition == SHARED)
     by_seed = zip(*(effect.per_seed for effect in pair), strict=True)
     return Case(
-        place=f"{record.scenes} scenes of {question.library}, {wording.seeds(question.seeds)}",
+        place=f"{record.scenes} scenes of {record.facts.library}, {wording.seeds(question.seeds)}",
         isolated=isolated,
         shared=shared,
         change=PrintedEffect.of(wording.with_interval(moved), moved.significant),
+        ahead=shares.ahead(question, frequency)
+        .replace(question.repair, "the retrained one")
+        .replace(question.baseline, "the original"),
         reversal=(_MODULE, "reversal") in ((c.isolated, c.turn) for c in record.changes),
         reversing=sum(one > 0 > two for one, two in by_seed),
         trainings=len(question.seeds),
-        weights=run.provenance.data[WEIGHTS],
-    )
-
-
-def counts() -> str:
-    """Return how many claims came out, in a sentence."""
-    record, ledger = load().record, load().record.ledger
-    return (
-        f"{_former()}{headline(ledger, record.profile)} ({ledger.scenes} scenes of "
-        f"`{ledger.library}`, seeds {', '.join(map(str, ledger.seeds))}; {record.trials:,} trials)."
-    )
-
-
-def ledger() -> str:
-    """Return how many claims of each kind got which answer."""
-    return f"{grid(by_kind(load().record.ledger))}\n\n{markdown(NON_DETECTION)}"
-
-
-def sizes() -> str:
-    """Return how the figures that the paper prints compare with ours."""
-    return grid(by_subject(load().record.ledger))
-
-
-def not_confirmed() -> str:
-    """Return each claim that is not confirmed, with the part that decides."""
-    return "\n".join(
-        f"- **{verdict}.** {markdown(decisive)}."
-        for verdict, decisive in apart(load().record.ledger)
+        weights=run.provenance.code.data[WEIGHTS],
     )
 
 
@@ -175,19 +132,7 @@ def standalone(drawing: str) -> str:
     )
 
 
-def origin() -> str:
-    """Return where the run comes from, and how much of it was flown again."""
-    run, place = load(), PLACE.relative_to(REFERENCE)
-    again = "" if _former() else _flown_again()
-    return (
-        f"Finished on {run.provenance.finished[:10]}, with {run.provenance.workers} workers on "
-        f"{run.processor}, and concluded anew by the code that is "
-        f"here, which a test repeats. {run.flown} {again}Everything is in "
-        f"[`docs/reference/{place}`]({{reference}}/{place}): the report, the ledger and all tables."
-    )
-
-
-def _flown_again() -> str:
+def flown_again() -> tuple[int, int]:
     """Return how many trials a reference run has repeated, and how many came out alike."""
     conditions = {CORRECT: CORRECT, SHARED: _FAULT, _MODULE: f"{_FAULT}@{_MODULE}"}
     setting = Setting(wind="L3")
@@ -206,40 +151,4 @@ def _flown_again() -> str:
         for row in read_outcomes(RUN / FILES[2])
     }
     pairs = [(here[key], there[key]) for key in here.keys() & there.keys()]
-    alike = sum(one == other for one, other in pairs)
-    return (
-        f"{len(pairs):,} of its trials were repeated by the reference run [`{AGAIN}`]"
-        f"({{reference}}/{AGAIN}): {alike:,} came out alike to the last bit. "
-    )
-
-
-def facts_in_short() -> str:
-    """Return in a sentence how the project stands to the facts, with the numbers of the others."""
-    others = ", ".join(str(fact.number) for fact in facts() if fact.state == "otherwise")
-    where = f"{{reference}}/{FACTS.relative_to(REFERENCE)}"
-    return f"{_facts_in_words()} [The list]({where}) says why, of numbers {others}."
-
-
-def _facts_in_words() -> str:
-    words = ", ".join(
-        f"{sum(fact.state == state for fact in facts())} {state}" for state in STANDINGS
-    )
-    return (
-        f"{len(facts())} facts: {words}. *As written*: what the paper says. *Our reading*: the "
-        "paper is silent there, or can be read in several ways. *Otherwise*: something else."
-    )
-
-
-def fact_page() -> Mapping[Path, str]:
-    """Return the page with every fact, by its path."""
-    parts = [
-        "# What the paper states, fact by fact",
-        f"{_facts_in_words()} "
-        "Places are files of `quadrotor/src/faultpath_quadrotor`, or of `src` from `faultpath/` "
-        "on and of `paper/src` from `faultpath_paper/` on, each with a name in the file. `make "
-        "docs` makes this page from `paper/src/faultpath_paper/data/facts.yaml`.",
-    ]
-    parts.append(grid(counted()))
-    for section, title in SECTIONS.items():
-        parts += [f"## {title}", grid(listed(section))]
-    return {FACTS: "\n\n".join(parts) + "\n"}
+    return len(pairs), sum(one == other for one, other in pairs)

@@ -20,11 +20,13 @@ from pathlib import Path
 
 import documents
 import repeats
-from blocks import PROVENANCE, REFERENCE, ROOT, Repeats, Run, load
+from blocks import OUTCOMES, PROVENANCE, REFERENCE, ROOT, Repeats, Run, load
 
 from faultpath.run.execution.provenance import processor
 
 TREE = ROOT / "build" / "references"
+KEPT = ROOT / "build" / "repeats"
+"""Where what a sample was repeated by is kept, by the name of the run."""
 APART = ("carry-over", "state-errors", "paper")
 SYSTEMS = {
     "basilisk": "Basilisk",
@@ -64,9 +66,12 @@ def show(runs: Iterable[Run]) -> dict[str, Repeats | None]:
     """Repeat a sample of each run, print what came of it, and keep that beside the run.
 
     Each environment has a process, beside this one, for all of its runs. `None` stands for a run
-    of which the environment is not here.
+    of which the environment is not here. A sample that code, packages and processor have repeated
+    before is not repeated again.
     """
-    runs = tuple(runs)
+    every = tuple(runs)
+    states = {run.name: state(run) for run in every}
+    runs = [run for run in every if not states[run.name] or kept(run) != states[run.name]]
     code = "import sys, blocks, repeats\nfor n in sys.argv[1:]: repeats.write(blocks.load(n))"
     variables = os.environ | {"PYTHONPATH": os.pathsep.join(map(str, sources(ROOT)))}
     own = [run for run in runs if environment(run) == ".venv"]
@@ -81,12 +86,34 @@ def show(runs: Iterable[Run]) -> dict[str, Repeats | None]:
         if process.wait():
             raise subprocess.CalledProcessError(process.returncode, process.args)
         results.update({run.name: run.repeats for run in there})
-    for run in runs:
-        result = results.setdefault(run.name, None)
+    for run in every:
+        result = results.setdefault(run.name, None if run in runs else run.repeats)
+        if result and states[run.name]:
+            KEPT.mkdir(parents=True, exist_ok=True)
+            (KEPT / run.name).write_text(states[run.name], "utf-8")
         text = str(result) if result else f"not asked: it needs {environment(run)}"
         text += f" ({result.first})" if result and result.first else ""
         print(f"{run.name:36s}{run.provenance.wall_s:6.0f} s  {text}", flush=True)
     return results
+
+
+def state(run: Run) -> str:
+    """Return what the repeat of a sample follows from; empty with changes that no commit has."""
+    outcomes = (REFERENCE / run.name / OUTCOMES).relative_to(ROOT)
+    places = ["src", "quadrotor/src", "examples", "tools", outcomes.as_posix()]
+    ask = ("git", "status", "--porcelain", *places)
+    if subprocess.run(ask, cwd=ROOT, check=True, capture_output=True).stdout:
+        return ""
+    names = [f"HEAD:{place}" for place in places]
+    trees = subprocess.run(("git", "rev-parse", *names), cwd=ROOT, check=True, capture_output=True)
+    installed = (ROOT / environment(run)).glob("lib/*/site-packages/*.dist-info")
+    packages = sorted(path.name for path in installed)
+    return "\n".join([processor(), environment(run), *packages, trees.stdout.decode()])
+
+
+def kept(run: Run) -> str:
+    """Return the state by which a run's sample was repeated last."""
+    return (KEPT / run.name).read_text("utf-8") if (KEPT / run.name).is_file() else ""
 
 
 def sources(tree: Path) -> list[Path]:
@@ -134,7 +161,7 @@ def fly(run: Run, commit: str) -> None:
 
 def elsewhere(run: Run) -> str:
     """Return a line for a run of another kind of processor, which rounds differently."""
-    before, here = run.provenance.processor, processor()
+    before, here = run.provenance.machine.processor, processor()
     if before == here:
         return ""
     return f"It was flown on {before}, and here is {here}: single trials may end differently.\n"
@@ -142,7 +169,7 @@ def elsewhere(run: Run) -> str:
 
 def environment(run: Run) -> str:
     """Return the virtual environment, as make has it, in which a run's system can be built."""
-    version = ".".join(run.provenance.python.split(".")[:2])
+    version = ".".join(run.provenance.machine.python.split(".")[:2])
     if version != f"{sys.version_info.major}.{sys.version_info.minor}":
         return f".venv-{version}"
     example = Path(run.provenance.command[2]).name

@@ -9,7 +9,6 @@ arithmetic is its own and has to repeat; NumPy and torch choose by processor and
 import hashlib
 from collections.abc import Sequence
 from contextlib import chdir, suppress
-from typing import Any
 
 from blocks import OUTCOMES, REFERENCE, REPEATS, ROOT, Repeats, Run
 
@@ -23,7 +22,6 @@ from faultpath.analyses.scan.record import ScanRecord
 from faultpath.api.replaying import outcomes_at
 from faultpath.run import Study, SystemSpec, Treatment, Trials, load_system
 from faultpath.run.attempt import Done, attempt
-from faultpath.run.question import AuditQuestion, MapQuestion, ScanQuestion
 from faultpath.run.store.folder import read_outcomes
 from faultpath.run.store.tables import TrialAddress
 from faultpath.system import Outcome, System, library_of
@@ -47,7 +45,7 @@ def repeat(run: Run) -> Repeats:
         for address, treatment in sample(run, study, before):
             treatments[treatment.key()] = treatment
             at.setdefault(treatment.key(), []).append(address)
-        tolerant = run.record.question.system != "quadrotor"
+        tolerant = run.record.facts.system != "quadrotor"
         repeated, near, first = 0, 0, ""
         for key, addresses in at.items():
             scenes = tuple(dict.fromkeys(address.scene for address in addresses))
@@ -66,24 +64,20 @@ def repeat(run: Run) -> Repeats:
 
 def planned(run: Run) -> tuple[System, Study]:
     """Return system and trials of a stored audit, map or scan, as the code here plans them."""
-    question: Any = run.record.question
-    spec = SystemSpec(name=question.system, options=question.options)
+    question, facts = run.record.question, run.record.facts
+    spec = SystemSpec(name=facts.system, options=question.options)
     system = load_system(spec)
-    library = library_of(system, question.library)
-    kinds = {MapRecord: MapQuestion, ScanRecord: ScanQuestion}
-    kind = kinds.get(type(run.record), AuditQuestion)
-    fields = {n: v for n in kind.model_fields if (v := getattr(question, n, None)) is not None}
-    request: Any = kind(**{**fields, "scenes": question.n_scenes})
+    library = library_of(system, facts.library)
     if isinstance(run.record, ScanRecord):
-        plan = plan_scan(system, spec, request, library)
+        plan = plan_scan(system, spec, question, library, known=run.record.ranking)
         return system, study_of(plan, read_outcomes(REFERENCE / run.name / OUTCOMES))
     if not isinstance(run.record, MapRecord):
-        return system, plan_audit(system, spec, request, library).study
+        return system, plan_audit(system, spec, question, library).study
     points = [
-        (round(one / question.up_to * UNITS), round(other / question.up_to * UNITS))
+        (round(one / facts.up_to * UNITS), round(other / facts.up_to * UNITS))
         for one, other in (point.errors for point in run.record.points)
     ]
-    return system, plan_map(system, spec, request, library).study(points)
+    return system, plan_map(system, spec, question, library).study(points)
 
 
 def study_of(plan: ScanPlan, trials: Trials) -> Study:
@@ -110,7 +104,7 @@ def sample(
         key=lambda place: _hash_order(*map(str, place)),
     )
     origin = run.provenance
-    cost = origin.wall_s * max(origin.workers, 1) / len(before)
+    cost = origin.wall_s * max(origin.machine.workers, 1) / len(before)
     trials = len(conditions) * len({variant for variant, _, _ in treatments})
     places = places[: min(8, max(1, int(SECONDS / (cost * trials))))]
     return [

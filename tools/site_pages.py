@@ -9,17 +9,21 @@ import os
 import re
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 import nbformat
+from blocks import load
 from docutils import nodes
 from myst_parser.parsers.sphinx_ import MystParser
 from nbclient import NotebookClient
 from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.util.osutil import relative_uri
+
+from faultpath.api.folders import MAP
+from faultpath.report.map import page as map_page
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"
@@ -46,9 +50,12 @@ def executed(path: Path) -> nbformat.NotebookNode:
 
 
 def as_markdown(notebook: nbformat.NotebookNode) -> str:
-    """Return a notebook's text, code and outputs as one MyST document."""
+    """Return a notebook's text, code and outputs as one MyST document, without the cells that are
+    for a service which hosts notebooks."""
     parts: list[str] = []
     for cell in notebook.cells:
+        if "hosted" in cell.metadata.get("tags", ()):
+            continue
         if cell.cell_type == "markdown":
             parts.append(cell.source)
             continue
@@ -82,21 +89,35 @@ class NotebookParser(MystParser):
         super().parse(as_markdown(executed(Path(source))), document)
 
 
-DESIGN = """
-```{toctree}
-:hidden:
-:glob:
+SIDE_BAR: Mapping[str, str] = {
+    "Start": "install tutorial concepts faq",
+    "Audit": "audit-your-own-system own-loop gymnasium torch their-code judge scan",
+    "Read results": "reading-a-report statistics reversal-map",
+    "Examples": "gallery quadrotor",
+    "Look up": "faults python api/index performance",
+}
+"""Pages of the side bar, by their heading."""
+BELOW: Mapping[str, str] = {
+    "install": "release-notes releasing",
+    "torch": "repairs",
+    "statistics": "statistics-check sequential-audits several-runs",
+    "gallery": "rotorpy do-mpc motulator basilisk wpilib openpilot stable-worldmodel lerobot "
+    "learned-world-model latent-camera notebooks/toy notebooks/gymnasium notebooks/quadrotor",
+    "quadrotor": "reproduction state-errors carry-over bring-your-own-model reference/README",
+    "python": "continuous-integration many-trials for-assistants",
+    "performance": "design/README",
+    "design/README": "*",
+}
+"""Pages that the side bar folds away below another."""
 
-*
-```
-"""
 
-
-def with_notes(app: Sphinx, name: str, source: list[str]) -> None:
-    """List the design notes in the navigation; GitHub shows their README as it is."""
+def with_contents(app: Sphinx, name: str, source: list[str]) -> None:
+    """Say which pages lie below a page; GitHub would show such a list as code."""
     del app
-    if name == "design/README":
-        source[0] += DESIGN
+    lists = SIDE_BAR if name == "index" else {"": BELOW[name]} if name in BELOW else {}
+    for caption, pages in lists.items():
+        options = [":hidden:", *([f":caption: {caption}"] if caption else []), ":glob:", ""]
+        source[0] += "\n".join(["", "```{toctree}", *options, *pages.split(), "```", ""])
 
 
 def linked(app: Sphinx, tree: nodes.document) -> None:
@@ -121,19 +142,42 @@ def linked(app: Sphinx, tree: nodes.document) -> None:
                 continue
             target = DOCS / Path(node["reftarget"]).parent
         page = next((target / name for name in PAGES if (target / name).is_file()), target)
+        if (target / MAP).is_file():
+            page = _map_page(target)
         if page.name in PAGES and page.is_relative_to(DOCS):
             uri = relative_uri(app.builder.get_target_uri(here), page.relative_to(DOCS).as_posix())
             node.replace_self(nodes.reference("", "", *node.children, refuri=uri, internal=True))
 
 
-def with_reports(app: Sphinx, error: Exception | None) -> None:
-    """Put the pages of reference runs beside the site's own."""
+def with_files(app: Sphinx, error: Exception | None) -> None:
+    """Put beside the site's own pages those of reference runs, those of maps made here, the films,
+    which pages show by HTML, and the guide for assistants."""
     if error is None:
-        for name in PAGES:
-            for page in REFERENCE.rglob(name):
-                target = Path(app.outdir) / page.relative_to(DOCS)
-                target.parent.mkdir(parents=True, exist_ok=True)
-                shutil.copyfile(page, target)
+        site = Path(app.outdir)
+        guide = (ROOT / "llms.txt").read_text("utf-8")
+        (site / "llms.txt").write_text(_ON_SITE.sub(_of_site, guide), "utf-8")
+        pages = (page for name in PAGES for page in REFERENCE.rglob(name))
+        for file in (*pages, *(DOCS / "images").glob("film-*.svg")):
+            target = site / file.relative_to(DOCS)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(file, target)
+        for path in REFERENCE.glob(f"*/{MAP}"):
+            run, target = load(path.parent.name), site / _map_page(path.parent).relative_to(DOCS)
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_text(map_page(run.record, run.provenance), "utf-8")
+
+
+_ON_SITE = re.compile(r"\((?:docs/([\w-]+)\.md|CHANGELOG\.md)\)")
+
+
+def _of_site(link: re.Match[str]) -> str:
+    """Link of the site to what a link of the repository leads to."""
+    return f"({link[1] or 'release-notes'}.html)"
+
+
+def _map_page(run: Path) -> Path:
+    """Place beside a stored map at which the site has the page of it."""
+    return run / "report.html"
 
 
 CODE = re.compile(r"(?<!`)`([^`]+)`(?!`)")
@@ -168,9 +212,9 @@ def setup(app: Sphinx) -> dict[str, bool]:
     """Register all of it."""
     app.add_source_suffix(".ipynb", "notebook")
     app.add_source_parser(NotebookParser)
-    app.connect("source-read", with_notes)
+    app.connect("source-read", with_contents)
     app.connect("doctree-read", linked)
-    app.connect("build-finished", with_reports)
+    app.connect("build-finished", with_files)
     app.connect("autodoc-process-docstring", plain, priority=400)  # before napoleon
     app.connect("autodoc-process-signature", public)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

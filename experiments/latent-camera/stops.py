@@ -16,7 +16,7 @@ def row(folder: str) -> dict:
     shares = {share.condition: share.words for share in record.break_even}
     return {
         "repair": record.question.repair,
-        "until": record.question.stop.when,
+        "until": record.question.stop_when,
         "scenes": record.stopped.scenes,
         "reached": record.stopped.reached,
         "break_even": shares,

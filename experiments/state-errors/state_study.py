@@ -203,6 +203,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--scenes", type=int, default=None, help="the first ones only")
     parser.add_argument("--workers", type=int, default=2)
     options = parser.parse_args(arguments)
+    if options.workers < 1:
+        parser.error(f"--workers {options.workers}: give at least one")
     show = Display(SafeConsole(stderr=True), ("state_study.py", *sys.argv[1:]))
     try:
         with chdir(ROOT):  # design and errors are named as from there

@@ -3,24 +3,39 @@
 from collections.abc import Callable
 
 import numpy as np
-from outcome_tables import question as audit
+from outcome_tables import BASELINE, REPAIR
 
 from faultpath.analyses.map.decide import decided
 from faultpath.analyses.map.lattice import COARSE, UNITS, Point, lattice
-from faultpath.analyses.map.model import ResolvedMap
+from faultpath.analyses.map.model import MapFacts
 from faultpath.analyses.map.record import MapRecord
 from faultpath.analyses.map.surface import Differences, next_points
+from faultpath.analyses.model import Invalid
+from faultpath.faults import FaultText
+from faultpath.run.question import MapQuestion
 
 MODULES = ("observer", "predictor")
+QUESTION = MapQuestion(
+    baseline=BASELINE, repair=REPAIR, fault=FaultText.read("gain"), against=MODULES, points=25
+)
+FACTS = MapFacts(
+    system="toy",
+    library="made up",
+    library_hash="hash-1",
+    n_scenes=100,
+    modules=MODULES,
+    up_to=0.4,
+    relative=True,
+    unit="1",
+    means=(0.0, 0.0),
+    spreads=(0.2, 0.2),
+)
 Seen = Callable[[float, float], tuple[np.ndarray, np.ndarray]]
 """From two errors to success of the repair and of the baseline, `[scenes]`."""
 
 
-def question(**given: object) -> ResolvedMap:
-    same = audit(100).model_dump(include={*ResolvedMap.model_fields})
-    errors = {"up_to": 0.4, "relative": True, "unit": "1", "means": (0.0, 0.0)}
-    more = {"fault": "gain", "against": MODULES, "spreads": (0.2, 0.2), "points": 81}
-    return ResolvedMap.model_validate(same | errors | more | given)
+def concluded(differences: Differences, invalid: Invalid | None = None) -> MapRecord:
+    return decided(QUESTION, FACTS, differences, invalid=invalid)
 
 
 def differences(seen: Seen, points: tuple[Point, ...], seeds: int = 1) -> Differences:
@@ -38,8 +53,8 @@ def grown(seen: Seen, limit: int = 81) -> Differences:
     return differences(seen, points)
 
 
-def record(seen: Seen, **given: object) -> MapRecord:
-    return decided(question(**given), grown(seen))
+def record(seen: Seen, **facts: object) -> MapRecord:
+    return decided(QUESTION, FACTS.model_copy(update=facts), grown(seen))
 
 
 def reversal(scenes: int) -> Seen:

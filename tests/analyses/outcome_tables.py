@@ -2,14 +2,17 @@
 
 from collections.abc import Mapping, Sequence
 from math import comb
+from typing import Any
 
 from outcomes import trial
 
 from faultpath.analyses.decide import decide
+from faultpath.analyses.facts import ComparisonFacts, SceneOrder
 from faultpath.analyses.model import CORRECT, SHARED, Condition
-from faultpath.analyses.question import Question
 from faultpath.analyses.record import DecisionRecord
+from faultpath.faults import FaultText
 from faultpath.run import Trial, Trials
+from faultpath.run.question import AuditQuestion
 from faultpath.system import Status
 
 BASELINE, REPAIR = "old", "new"
@@ -21,18 +24,24 @@ Counts = tuple[int, int, int]
 """Scenes that both win, that only the repair wins, and that only the baseline wins."""
 
 
-def question(n_scenes: int = SCENES, seeds: Sequence[int] = (0,)) -> Question:
-    return Question(
+def question(**asked: Any) -> AuditQuestion:
+    fault = FaultText.read("gain:scale=0.6")
+    return AuditQuestion(baseline=BASELINE, repair=REPAIR, fault=fault, **asked)
+
+
+def facts(n_scenes: int = SCENES, seeds: Sequence[int] = (0,), **more: Any) -> ComparisonFacts:
+    return ComparisonFacts(
         system="toy",
-        options={},
-        baseline=BASELINE,
-        repair=REPAIR,
-        fault="gain:scale=0.6",
         library="made up",
         library_hash="hash-1",
         n_scenes=n_scenes,
         seeds=tuple(seeds),
+        **more,
     )
+
+
+def sequential(per_analysis: int = 5) -> SceneOrder:
+    return SceneOrder(scenes=(), seed=0, per_analysis=per_analysis, trials=8)
 
 
 def conditions(*names: str) -> tuple[Condition, ...]:
@@ -97,13 +106,14 @@ def record(
     cells: Mapping[str, Counts | Sequence[Counts]],
     n: int = SCENES,
     altered: Mapping[str, int] = {},
+    trained: bool = False,
     **asked: object,
 ) -> DecisionRecord:
     """Return the record of such trials; `asked` changes the question."""
     first = next(iter(cells.values()))
     seeds = range(len(first)) if isinstance(first, list) else (0,)
-    about = question(n, seeds).model_copy(update=asked)
-    return decide(about, conditions(*cells), table(cells, n, **altered))
+    about = facts(n, seeds, trained=trained)
+    return decide(question(**asked), about, conditions(*cells), table(cells, n, **altered))
 
 
 def three(correct: Counts, isolated: Counts, shared: Counts, **changes: object) -> DecisionRecord:

@@ -30,7 +30,7 @@ def judged(trials: list[tuple[str, str, str]], blank: int | None = None, **asked
     ]
     question = JudgeQuestion.model_validate({"baseline": "old", "repair": "new", **asked})
     laid = pair_results(rows, question)
-    return decide(laid.question, laid.conditions, laid.trials, laid.findings)
+    return decide(laid.question, laid.facts, laid.conditions, laid.trials, laid.findings)
 
 
 def test_two_scenes_with_an_extra_seed_leave_the_other_28():
@@ -38,7 +38,7 @@ def test_two_scenes_with_an_extra_seed_leave_the_other_28():
     made = judged([*trials, ("", "s3", "1"), ("", "s4", "9")])
     whole = judged(trials)
     assert made.scenes == 30
-    assert made.question.seeds == (7,)
+    assert made.facts.seeds == (7,)
     assert made.effects[0].model_copy(update={"missing": None}) == whole.effects[0]
     (said,) = set(made.findings) - set(whole.findings)
     assert said == (

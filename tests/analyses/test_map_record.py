@@ -4,10 +4,9 @@ import re
 
 import numpy as np
 import pytest
-from map_toys import Seen, alike, differences, grown, question, record, reversal
+from map_toys import Seen, alike, concluded, differences, grown, record, reversal
 from pydantic import ValidationError
 
-from faultpath.analyses.map.decide import decided
 from faultpath.analyses.map.joint import Errors, lattice_weights
 from faultpath.analyses.map.lattice import COARSE, SHOWN, UNITS, lattice, surface_weights
 from faultpath.analyses.map.record import MapRecord
@@ -42,8 +41,8 @@ def test_the_break_even_correlation_is_where_the_expectation_is_zero() -> None:
 
 def test_swapping_the_variants_swaps_the_record() -> None:
     found = grown(reversal(60))
-    one = decided(question(), found)
-    two = decided(question(), Differences(found.points, found.baseline, found.repair))
+    one = concluded(found)
+    two = concluded(Differences(found.points, found.baseline, found.repair))
     assert [p.sign for p in one.points] == [-p.sign for p in two.points]
     assert [r.sign for r in one.joint.regions] == [-r.sign for r in two.joint.regions]
     np.testing.assert_allclose(one.joint.undecided, two.joint.undecided)
@@ -95,7 +94,7 @@ def _weak(strong: int, sign: int) -> Seen:
 @pytest.mark.parametrize("strong", [0, 1, 2])
 def test_ahead_is_said_only_at_pairs_of_errors_that_were_run(strong: int, sign: int) -> None:
     """The average over errors can leave out 0 where no pair of errors does."""
-    made = decided(question(points=25), differences(_weak(strong, sign), lattice(COARSE)))
+    made = concluded(differences(_weak(strong, sign), lattice(COARSE)))
     assert sum(point.sign == sign for point in made.points) == strong
     assert {region.sign for region in made.joint.regions} == {sign}
     winner = "new" if sign > 0 else "old"
@@ -144,7 +143,7 @@ def test_a_place_between_points_is_claimed_nowhere() -> None:
         place = np.random.default_rng(int(1000 * (x + 2) + 10 * (y + 2))).random((2, 100))
         return place[0] < 0.7 - 0.25 * abs(x), place[1] < 0.8 - 0.35 * abs(x - y)
 
-    result = decided(question(points=25), differences(ridge, lattice(COARSE)))
+    result = concluded(differences(ridge, lattice(COARSE)))
     text = " ".join((result.headline, *result.sentences))
     assert not re.search(r"correlat\w* .*(does better|is ahead|succeed)", text)
     run = {x or y for x, y in (point.errors for point in result.points)}
@@ -156,7 +155,7 @@ def test_a_place_between_points_is_claimed_nowhere() -> None:
 
 @pytest.mark.parametrize("invalid", ["unrepeatable", "unpaired"])
 def test_a_map_of_trials_on_which_nothing_rests_claims_nothing(invalid) -> None:
-    result = decided(question(), grown(reversal(100)), invalid=invalid)
+    result = concluded(grown(reversal(100)), invalid=invalid)
     assert result.headline.startswith("No result: ")
     assert result.sentences == ()
     assert not any(point.sign for point in result.points)

@@ -65,8 +65,8 @@ def test_an_offset_is_in_the_unit_of_the_reading() -> None:
     question = {"baseline": "wheels", "repair": "ranges", "fault": "range:offset,onset=5"}
     question |= {"against": ("approach", "speedometer"), "up_to": 0.5, "scenes": 4}
     planned = plan_map(system, dock, ask(MapQuestion, question), library_of(system, "floors"))
-    assert not planned.question.relative
-    assert planned.question.said(-0.25) == "−0.25 m"
+    assert not planned.facts.relative
+    assert planned.facts.size_label(-0.25) == "−0.25 m"
     (fault,) = planned.study([(0, 16)]).rows[1].treatment.faults
     assert (fault.onset_step, fault.intervention.by) == (5, 0.25)  # type: ignore[union-attr] - a bias
 

@@ -10,15 +10,16 @@ from outcome_tables import (
     REPAIR,
     Counts,
     conditions,
+    facts,
     question,
     rows,
+    sequential,
     variants,
 )
 
 from faultpath.analyses.decide import decide
 from faultpath.analyses.effects import Change, Effect
 from faultpath.analyses.model import CORRECT, SHARED
-from faultpath.analyses.question import StopRule
 from faultpath.analyses.record import DecisionRecord
 from faultpath.analyses.sentences import phrases, wording
 from faultpath.analyses.sentences.answers import answers
@@ -93,13 +94,12 @@ def run(
                 if how == "void" and variant == REPAIR and condition == over[-1]:
                     ends[0] = Status.FAILED
                 out += rows(variant, condition, ends, seed=seed, altered=0 if idle else None)
-    asked = question(n, seeds).model_copy(update={"trained": trained})
+    asked, about = question(), facts(n, seeds, trained=trained)
     if rule:
         when, margin, most = RULES[rule]
-        stop = StopRule(when=when, margin_pp=margin, order=(), order_seed=0, look=5, trials=8)
-        update = {"stop": stop, "n_scenes": most or n}
-        asked = asked.model_copy(update=update)
-    return decide(asked, conditions(*over), Trials.of(out))
+        asked = question(stop_when=when, margin_pp=margin)
+        about = facts(most or n, seeds, trained=trained, order=sequential())
+    return decide(asked, about, conditions(*over), Trials.of(out))
 
 
 def sentences(made: DecisionRecord) -> Iterator[str]:
@@ -111,7 +111,7 @@ def sentences(made: DecisionRecord) -> Iterator[str]:
 
 def holm(made: DecisionRecord, tested: list[Effect | Change]) -> list[float]:
     """Return p-values by Holm's procedure, weighted where the rule is."""
-    primary = [isinstance(e, Effect) and e.condition == made.question.primary for e in tested]
+    primary = [isinstance(e, Effect) and e.condition == made.facts.primary for e in tested]
     weighted = any(primary)
     weights = [max(1, len(tested) - 1) if weighted and it else 1 for it in primary]
     order = sorted(range(len(tested)), key=lambda i: tested[i].p_value / weights[i])
@@ -129,7 +129,7 @@ def shared_out(made: DecisionRecord, tested: list[Effect | Change]) -> list[floa
     others = len(named) - 1 + (len(named - {CORRECT, SHARED}) if SHARED in named else 0)
     adjusted: list[float] = []
     for each in tested:
-        primary = isinstance(each, Effect) and each.condition == made.question.primary
+        primary = isinstance(each, Effect) and each.condition == made.facts.primary
         factor = 1 if not others else 2 if primary else 2 * others
         adjusted.append(min(1.0, factor * each.p_value))
     return adjusted
@@ -181,7 +181,7 @@ def check(made: DecisionRecord) -> None:
     assert ("Do not" in whole) == bool(misleading and SHARED not in extreme)
     plain = answers(made)
     advised = "Ask which" in " ".join(plain.values())
-    if made.scenes < made.scenes_needed:
+    if made.scenes < made.testing.scenes_needed:
         assert list(plain) == ["Left open", "How sure"]
         assert plain["Left open"].startswith("Too few scenes")
         assert not advised
@@ -200,7 +200,7 @@ def check(made: DecisionRecord) -> None:
         if effect.unsettled:
             assert "failed" in short
         elif (low > 0 or high < 0) and effect.acted and not effects.get(effect.condition):
-            assert made.scenes < made.scenes_needed or f"{effect.corrected_p:.3f}" in short
+            assert made.scenes < made.testing.scenes_needed or f"{effect.corrected_p:.3f}" in short
         for who, side in SIDES:
             assert claimed(short, who) == (effects.get(effect.condition, 0) == side)
     frequencies = [(item, CORRECT, item.condition) for item in made.break_even]
@@ -213,11 +213,11 @@ def check(made: DecisionRecord) -> None:
         part = " is ahead where " in words
         assert (shown == "any") == (not words or part), (shown, words)
         assert item.result.level >= 0.95 - 1e-12
-    if made.question.primary not in {e.condition for e in made.effects}:
+    if made.facts.primary not in {e.condition for e in made.effects}:
         assert "no pair of trials is left" in made.headline
-    elif made.scenes < made.scenes_needed:
+    elif made.scenes < made.testing.scenes_needed:
         assert made.headline.startswith("Too few scenes")
-        assert str(made.scenes_needed) in made.headline
+        assert str(made.testing.scenes_needed) in made.headline
 
 
 def reads_well(made: DecisionRecord) -> None:
@@ -246,30 +246,30 @@ def test_no_sentence_claims_what_was_not_decided(n: int, how: str, over: str) ->
 
 def says_how_it_stopped(made: DecisionRecord) -> None:
     """Check what is said of stopping, and that nothing is shown that needs a fixed number."""
-    held, asked = made.stopped, made.question
+    held, asked, about = made.stopped, made.question, made.facts
     assert held
-    assert asked.stop
+    assert about.order
     told = next(s for s in made.sentences if s.startswith("This audit was sequential"))
-    most = asked.n_scenes
+    most = about.n_scenes
     signs = may_be_said(made)[0]
-    settled = {condition for condition, sign in signs.items() if sign} | set(held.small)
+    decided = {condition for condition, sign in signs.items() if sign} | set(held.small)
     wanted = (
-        {e.condition for e in made.effects} if asked.stop.when == "all-decided" else {asked.primary}
+        {e.condition for e in made.effects} if asked.stop_when == "all-decided" else {about.primary}
     )
-    assert held.reached == (wanted <= settled)
+    assert held.reached == (wanted <= decided)
     assert ("it stopped after" in told) == (held.reached and held.scenes < most)
     assert ("all that it was allowed" in told) == (held.scenes == most)
     assert ("not significant" in told or "not every" in told) == (not held.reached)
     assert held.scenes == 1 or "1 scenes" not in told
     for effect, secondary in zip(made.effects, made.secondary, strict=True):
         small = effect.condition in held.small
-        assert not small or asked.stop.margin_pp
+        assert not small or asked.margin_pp
         low, high = effect.low or 0.0, effect.high or 0.0
-        assert not small or max(-low, high) < (asked.stop.margin_pp or 0.0)
+        assert not small or max(-low, high) < (asked.margin_pp or 0.0)
         assert effect.least_pp is None
         for other in (secondary.time_s, *secondary.metrics.values()):
             assert other is None or (other.low, other.high) == (None, None)
-    assert "differ by less than" not in made.headline or asked.primary in held.small
+    assert "differ by less than" not in made.headline or about.primary in held.small
     whole = made.model_dump_json()
     for fixed in ("Holm", "80 % power", "McNemar", "sign test", "Tango", "bootstrap", "score"):
         assert fixed not in whole

@@ -4,11 +4,10 @@ import re
 from collections.abc import Iterator
 from itertools import product
 
-from outcome_tables import BASELINE, MOST_WORDS, REPAIR, record
+from outcome_tables import BASELINE, MOST_WORDS, REPAIR, record, sequential
 
 from faultpath.analyses.effects import Effect
 from faultpath.analyses.model import CORRECT, SHARED
-from faultpath.analyses.question import StopRule
 from faultpath.analyses.record import DecisionRecord
 from faultpath.analyses.sentences.answers import answers
 from faultpath.analyses.sentences.wording import where
@@ -39,14 +38,16 @@ def made(states: dict[str, State], primary: str, turned: str = "") -> DecisionRe
         and SHARED in states
         and IDLE not in (states[change.isolated], states[SHARED])
     ]
-    question = FOUR.question.model_copy(update={"primary": primary, "trained": True})
+    question = FOUR.question
+    facts = FOUR.facts.model_copy(update={"primary": primary, "trained": True})
     small = tuple(condition for condition, state in states.items() if state == SMALL)
     if small:
-        rule = StopRule(when="decided", margin_pp=5.0, order=(), order_seed=0, look=5, trials=8)
-        question = question.model_copy(update={"stop": rule})
+        question = question.model_copy(update={"stop_when": "decided", "margin_pp": 5.0})
+        facts = facts.model_copy(update={"order": sequential()})
     held = {"scenes": 100, "reached": True, "small": small}
-    update = {"question": question, "effects": tuple(effects), "changes": tuple(changes)}
-    partial = FOUR.model_copy(update=update | {"break_even": ()})
+    update = {"effects": tuple(effects), "changes": tuple(changes)}
+    update |= {"question": question, "facts": facts}
+    partial = FOUR.model_copy(update=update | {"break_evens": ()})
     if small:
         partial = DecisionRecord.model_validate(partial.model_dump() | {"stopped": held})
     return partial

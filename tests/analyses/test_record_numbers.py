@@ -6,6 +6,7 @@ from outcome_tables import (
     REPAIR,
     conditions,
     exact_p,
+    facts,
     question,
     record,
     rows,
@@ -74,8 +75,8 @@ def test_break_even_follows_from_the_two_effects(correct, fault, p_star, signs):
 @pytest.mark.parametrize(("n", "enough"), [(3, False), (6, False), (8, True)])
 def test_too_few_scenes_decide_nothing_and_the_number_that_would_is_known(n, enough):
     made = record({CORRECT: (0, n, 0), "a": (0, n, 0), "b": (0, n, 0), SHARED: (0, 0, n)}, n=n)
-    assert made.hypotheses == 6
-    assert made.scenes_needed == 7  # 2 / 2^7 <= 0.05 / 2 < 2 / 2^6
+    assert made.testing.hypotheses == 6
+    assert made.testing.scenes_needed == 7  # 2 / 2^7 <= 0.05 / 2 < 2 / 2^6
     assert all(effect.significant == enough for effect in made.effects)
     assert [change.turn for change in made.changes] == ["reversal" if enough else "none"] * 2
 
@@ -95,7 +96,10 @@ def _with_failures(*failed: tuple[str, str, int]) -> Trials:
 def test_a_failed_trial_costs_its_pair_and_shows_and_costs_other_conditions_nothing():
     # Scene 45 is won by the repair alone under correct inputs, and lost to the baseline otherwise.
     made = decide(
-        question(), conditions(CORRECT, "observer"), _with_failures((REPAIR, "observer", 45))
+        question(),
+        facts(),
+        conditions(CORRECT, "observer"),
+        _with_failures((REPAIR, "observer", 45)),
     )
     correct, observer = made.effects
     assert (correct.void, observer.void) == (0, 1)
@@ -112,7 +116,7 @@ def test_a_failed_trial_costs_its_pair_and_shows_and_costs_other_conditions_noth
 
 def test_a_condition_without_any_pair_costs_the_others_nothing_and_is_named():
     every = tuple((REPAIR, "observer", i) for i in range(100))
-    made = decide(question(), conditions(CORRECT, "observer"), _with_failures(*every))
+    made = decide(question(), facts(), conditions(CORRECT, "observer"), _with_failures(*every))
     (correct,) = made.effects
     assert (correct.condition, correct.scenes, correct.void) == (CORRECT, 100, 0)
     assert not made.break_even
@@ -121,7 +125,7 @@ def test_a_condition_without_any_pair_costs_the_others_nothing_and_is_named():
     assert made.findings[0].startswith(said)
     every += tuple((REPAIR, CORRECT, i) for i in range(100))
     with pytest.raises(UserError, match="no scene is left"):
-        decide(question(), conditions(CORRECT, "observer"), _with_failures(*every))
+        decide(question(), facts(), conditions(CORRECT, "observer"), _with_failures(*every))
 
 
 def test_several_seeds_are_averaged_within_each_scene():
@@ -156,22 +160,22 @@ def test_a_condition_on_which_the_fault_never_acted_is_no_part_of_the_family():
     for condition, counts in ((CORRECT, (50, 9, 1)), ("a", (40, 20, 2)), (SHARED, (40, 2, 20))):
         for variant, statuses in variants(counts).items():
             out += rows(variant, condition, statuses, altered=0 if condition == "a" else None)
-    made = decide(question(), conditions(CORRECT, "a", SHARED), Trials.of(out))
+    made = decide(question(), facts(), conditions(CORRECT, "a", SHARED), Trials.of(out))
     idle = made.effects[1]
     assert not idle.acted
     assert not idle.significant
     assert idle.corrected_p is None
-    assert made.hypotheses == 2
+    assert made.testing.hypotheses == 2
     assert made.changes == ()
     assert [each.condition for each in made.break_even] == [SHARED]
 
 
 def test_the_primary_contrast_is_the_shared_condition_or_the_only_isolated_one_or_the_one_named():
     level = (50, 5, 5)
-    assert three(level, level, level).question.primary == SHARED
-    assert record({CORRECT: level, "observer": level}).question.primary == "observer"
-    named = question().model_copy(update={"primary": "observer"})
+    assert three(level, level, level).facts.primary == SHARED
+    assert record({CORRECT: level, "observer": level}).facts.primary == "observer"
+    named = question(primary="observer")
     cells = {CORRECT: level, "observer": level, SHARED: level}
-    assert decide(named, conditions(*cells), table(cells)).question.primary == "observer"
+    assert decide(named, facts(), conditions(*cells), table(cells)).facts.primary == "observer"
     with pytest.raises(UserError, match=r"no condition 'obs'.*has correct, observer, shared"):
-        decide(named.model_copy(update={"primary": "obs"}), conditions(*cells), table(cells))
+        decide(question(primary="obs"), facts(), conditions(*cells), table(cells))

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from outcome_tables import conditions, question, record, table
+from outcome_tables import conditions, facts, question, record, table
 
 from faultpath.analyses.decide import decide
 from faultpath.analyses.planning import plan_audit
@@ -23,8 +23,8 @@ def told(better: str, values: dict[str, float], *thresholds: float):
         error = {"error": values[row.variant] + row.scene_index / 100}
         rows.append(replace(row, outcome=replace(row.outcome, metrics=error)))
     metrics = {"error": Metric(unit="rad", better=better)}
-    update = {"metrics": metrics, "metric": "error", "thresholds": thresholds}
-    return decide(question().model_copy(update=update), conditions(*CELLS), Trials.of(rows))
+    asked = question(metric="error", thresholds=thresholds)
+    return decide(asked, facts(metrics=metrics), conditions(*CELLS), Trials.of(rows))
 
 
 @pytest.mark.parametrize("better", ["less", "more"])

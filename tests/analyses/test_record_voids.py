@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from outcome_tables import BASELINE, REPAIR, SCENES, conditions, question, rows
+from outcome_tables import BASELINE, REPAIR, SCENES, conditions, facts, question, rows
 
 from faultpath.analyses.decide import decide
 from faultpath.analyses.model import CORRECT, SHARED
@@ -32,9 +32,9 @@ def audit(
         for variant, statuses in zip((REPAIR, BASELINE), ends, strict=True)
         for row in rows(variant, condition, statuses, seed)
     ]
-    graded = question(len(correct[0]), range(1 + len(seeds))).model_copy(update={"rule": "graded"})
+    about = facts(len(correct[0]), range(1 + len(seeds)))
     names = dict.fromkeys(condition for condition, _, _ in over)
-    return decide(graded, conditions(*names), Trials.of(out))
+    return decide(question(), about, conditions(*names), Trials.of(out))
 
 
 def ends(success: np.ndarray, failed: np.ndarray | None = None) -> Ends:
@@ -178,9 +178,8 @@ def test_trials_that_do_not_repeat_or_are_no_pairs_support_nothing(invalid):
     if invalid == "unpaired":
         last = trials[-1]
         trials[-1] = replace(last, outcome=replace(last.outcome, initial_hash="another"))
-    graded = question().model_copy(update={"rule": "graded"})
     table, over = Trials.of(trials), conditions(CORRECT, "observer", SHARED)
-    made = decide(graded, over, table, repeats=invalid == "unpaired")
+    made = decide(question(), facts(), over, table, repeats=invalid == "unpaired")
     assert made.invalid == invalid
     assert made.headline.startswith("No result: ")
     assert not any(item.sign for item in (*made.effects, *made.changes))

@@ -1,7 +1,7 @@
 """What a record says, case by case, as it was approved."""
 
 import pytest
-from outcome_tables import Counts, conditions, question, record, table, three
+from outcome_tables import Counts, conditions, facts, question, record, table, three
 from outcomes import trial
 
 from faultpath.analyses.decide import decide
@@ -54,7 +54,7 @@ CASES = {
 def failing(condition: str) -> DecisionRecord:
     """Return a record of which every trial of the repair under a condition failed."""
     cells = {CORRECT: (40, 20, 10), "observer": (20, 10, 30)}
-    return decide(question(), conditions(*cells), lost(cells, condition))
+    return decide(question(), facts(), conditions(*cells), lost(cells, condition))
 
 
 def lost(cells: dict[str, Counts | list[Counts]], condition: str, seed: int = 0) -> Trials:
@@ -70,7 +70,7 @@ def lost(cells: dict[str, Counts | list[Counts]], condition: str, seed: int = 0)
 
 def text_of(made: DecisionRecord) -> str:
     """Return all that is said: headline, answers, remarks, changes, and each effect in short."""
-    lines = [made.headline, f"Of {estimand(made.question)}.", ""]
+    lines = [made.headline, f"Of {estimand(made.question, made.facts)}.", ""]
     lines += [f"{label}: {said}" for label, said in answers(made).items()]
     lines += [
         "",
@@ -105,7 +105,8 @@ def test_a_training_that_failed_throughout_under_one_condition_is_left_out_there
     """It ended in a traceback: effects under two conditions had other numbers of trainings."""
     by_seed = [(40 - seed, 30 + seed, 2) for seed in range(6)]
     cells = {CORRECT: by_seed, "observer": by_seed, SHARED: by_seed}
-    about = question(100, range(6)).model_copy(update={"trained": True, "generalise": "models"})
-    made = decide(about, conditions(*cells), lost(cells, SHARED, training))
+    about = facts(100, range(6), trained=True)
+    trials = lost(cells, SHARED, training)
+    made = decide(question(generalise="models"), about, conditions(*cells), trials)
     assert [len(effect.per_seed) for effect in made.effects] == [6, 6, 5]
     assert len(made.changes[0].per_seed) == 5

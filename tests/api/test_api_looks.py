@@ -31,7 +31,7 @@ def test_more_scenes_in_the_same_folder_leave_a_trace_that_stays(monkeypatch):
     assert FIVE_PERCENT in said(first)
     assert not first.record.earlier
     more = audited(scenes=20, signals=True)
-    assert [look.scenes for look in more.record.earlier] == [12]
+    assert [analysis.scenes for analysis in more.record.earlier] == [12]
     assert "concluded before with 12 scenes" in said(more)
     assert FIVE_PERCENT not in said(more)
     with monkeypatch.context() as killed:
@@ -40,13 +40,13 @@ def test_more_scenes_in_the_same_folder_leave_a_trace_that_stays(monkeypatch):
             audited(scenes=20, signals=True)
     assert audited(scenes=20).record == more.record
     back = audited(scenes=12)
-    assert [look.scenes for look in back.record.earlier] == [20]
+    assert [analysis.scenes for analysis in back.record.earlier] == [20]
 
 
 def test_another_primary_contrast_is_a_look():
     audited(scenes=12)
     found = audited(scenes=12, primary="correct").record
-    assert [(look.scenes, look.primary) for look in found.earlier] == [(12, "shared")]
+    assert [(analysis.scenes, analysis.primary) for analysis in found.earlier] == [(12, "shared")]
 
 
 def test_what_could_announce_nothing_is_no_look():
@@ -58,4 +58,4 @@ def test_sequential_looks_are_allowed_for_as_long_as_they_lead_to_one_contrast()
     audited(scenes=15, stop_when="decided")
     assert not audited(scenes=20, stop_when="all-decided").record.earlier
     other = audited(scenes=20, stop_when="all-decided", primary="correct").record
-    assert [(look.scenes, look.primary) for look in other.earlier] == [(None, "shared")]
+    assert [(analysis.scenes, analysis.primary) for analysis in other.earlier] == [(None, "shared")]

@@ -58,26 +58,48 @@ def test_importing_loads_nothing_heavy():
 
 LEFT_ALONE = """
 import os, random, signal, sys
-import faultpath, faultpath_quadrotor, torch  # the second says what torch computes with
+import numpy as np, torch
+
+def state():
+    cudnn = torch.backends.cudnn
+    return {
+        "threads": torch.get_num_threads(),
+        "threads between": torch.get_num_interop_threads(),
+        "gradients": torch.is_grad_enabled(),
+        "precision": (torch.get_default_dtype(), torch.get_float32_matmul_precision()),
+        "cudnn": (cudnn.allow_tf32, cudnn.deterministic, cudnn.benchmark),
+        "draws": (torch.get_rng_state().tolist(), random.getstate(), repr(np.random.get_state())),
+        "rounding": np.geterr(),
+        "environment": dict(os.environ),
+        "folder": os.getcwd(),
+        "signals": [signal.getsignal(each) for each in sorted(signal.valid_signals())],
+        "hooks": (list(sys.meta_path), list(sys.path_hooks), sys.excepthook),
+    }
+
 torch.set_num_threads(3)
-before = (torch.get_num_threads(), dict(os.environ), random.getstate(), os.getcwd())
-handler = signal.getsignal(signal.SIGINT)
+before, path = state(), list(sys.path)
+import faultpath, faultpath_quadrotor.plant.module
+from faultpath.run import Treatment
+from faultpath.run.attempt import Done, attempt
 system = faultpath.load_system("quadrotor", options={"wind": "L1", "candidates": 1024})
-assert system.interface and "gru" in system.variants
+faultpath_quadrotor.plant.module.CONTROL_STEPS = 8
+scene = system.library("selection").scenes[0].id
+assert isinstance(attempt(system, Treatment(variant="zero-wind"), [scene]), Done)
 faultpath.audit(
     TOY, baseline="calibrated", repair="blind", fault="gain:scale=0.6", library="carts", scenes=8,
     workers=0, progress=False,
 )
-assert before == (torch.get_num_threads(), dict(os.environ), random.getstate(), os.getcwd())
-assert signal.getsignal(signal.SIGINT) is handler
+after = state()
+print([name for name in before if before[name] != after[name]])
+print([place for place in sys.path if place not in path], sys.path[: len(path)] == path)
 """
 
 
 def test_calls_leave_the_process_as_it_was(tmp_path):
-    """The quadrotor's is loaded too."""
-    toy = Path(__file__).resolve().parents[2] / "examples" / "toy.py"
-    code = f"TOY = {str(toy)!r}\n{LEFT_ALONE}"
-    there = {**os.environ, "OMP_NUM_THREADS": "4"}
-    line = [sys.executable, "-c", code]
+    """Threads of torch, environment, random states: also when they run the quadrotor."""
+    examples = Path(__file__).resolve().parents[2] / "examples"
+    code = f"TOY = {str(examples / 'toy.py')!r}\n{LEFT_ALONE}"
+    there = {name: value for name, value in os.environ.items() if "NUM_THREADS" not in name}
+    line = [sys.executable, "-P", "-c", code]
     done = subprocess.run(line, cwd=tmp_path, env=there, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines() == ["[]", f"{[str(examples)]} True"], done.stderr

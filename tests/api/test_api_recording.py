@@ -96,9 +96,3 @@ def test_a_system_that_does_not_fly_again_is_a_finding(tmp_path, second) -> None
     said = next(each for each in run.record.findings if "signals" in each.lower())
     assert {"raises": "not again", "ends": "sys.exit(3)", "differs": "time_s"}[second] in said
     assert said in (run.folder / "report.html").read_text("utf-8").replace("&#39;", "'")
-
-
-def test_without_signals_nothing_is_flown_again(tmp_path, monkeypatch) -> None:
-    monkeypatch.setattr(AUDIT_MODULE, "run_again", None)
-    run = faultpath.audit(FILE, **ASKED, folder=tmp_path / "run", signals=False)
-    assert not (run.folder / SIGNALS).exists()

@@ -1,5 +1,6 @@
 """Trials of a finished run flown again: the same to the bit, heard, and in the report."""
 
+import json
 import shutil
 from dataclasses import replace
 from pathlib import Path
@@ -10,7 +11,7 @@ from toy_audits import AUDIT, TOY
 
 import faultpath
 from faultpath.api.folders import read_run
-from faultpath.api.replaying import chosen_scenes, keep_signals, replay
+from faultpath.api.replaying import chosen_scenes, keep_signals, replay, where_parted
 from faultpath.cli.replay import replay as command
 from faultpath.core.errors import UserError
 from faultpath.run.store.signals import IN_FORCE, SIGNALS, Signal
@@ -95,8 +96,8 @@ def test_only_scenes_and_conditions_of_a_run_that_can_be_built_are_run_again(fol
         chosen_scenes(source, ("cart/09",), ())
     with pytest.raises(UserError, match=r"unknown condition"):
         chosen_scenes(source, (), ("both",))
-    question = source.record.question.model_copy(update={"system": "Toy object"})
-    lost = replace(source, record=source.record.model_copy(update={"question": question}))
+    facts = source.record.facts.model_copy(update={"system": "Toy object"})
+    lost = replace(source, record=source.record.model_copy(update={"facts": facts}))
     with pytest.raises(UserError, match="is of a Toy object, which only its own process had"):
         replay(lost, (SCENE,), trust=True)
 
@@ -106,19 +107,54 @@ def test_the_verb_says_whether_a_run_repeats(folder, capsys) -> None:
     assert "2 trials in 1 scene came out as in the run, to the bit." in capsys.readouterr().out
 
 
+def test_the_verb_says_where_versions_and_conditions_part(folder, capsys) -> None:
+    one = {"trust": True, "scene": [SCENE], "where": True}
+    assert command(folder, **one, condition=["shared"]) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    begin = f"{SCENE}, seed 0, shared, calibrated and blind: At 0.10 s the slope that the"
+    assert said.count(", seed 0, ") == 3  # two trials that ran again, and the couple
+    assert f"{begin} controller of blind reads is" in said
+    assert command(folder, **one, condition=["correct", "shared"], as_json=True) == 0
+    partings = json.loads(capsys.readouterr().out)
+    couples = [[(t["variant"], t["condition"]) for t in of["trials"]] for of in partings]
+    assert couples == [
+        [("calibrated", "correct"), ("blind", "correct")],
+        [("calibrated", "shared"), ("blind", "shared")],
+        [("calibrated", "correct"), ("calibrated", "shared")],
+        [("blind", "correct"), ("blind", "shared")],
+    ]
+    onset = partings[2]["first"]["reading"]
+    assert (onset["step"], onset["name"], onset["delivered"]) == (20, "gain", True)
+    assert onset["values"][1] == pytest.approx(0.6 * onset["values"][0])
+    assert partings[2]["first"]["state"]["step"] == 21
+    with pytest.raises(UserError, match="give --where too"):
+        command(folder, trust=True, as_json=True)
+
+
+def test_trials_that_came_out_otherwise_are_not_compared(folder, found) -> None:
+    source = read_run(folder)
+    unlike = [replace(each, differs="time_s") if i == 0 else each for i, each in enumerate(found)]
+    first = unlike[0].address
+    left = where_parted(source, unlike, [SCENE])
+    assert len(left) == 3
+    assert first.condition not in {end.condition for of in left for end in of.trials}
+
+
 @pytest.mark.parametrize(
     ("update", "words"),
     [
         ({}, ()),
-        ({"processor": "Abacus"}, ("the processor (Abacus, here ",)),
-        ({"backend": "stones"}, ("what computes (stones, here )",)),
-        ({"python": "2.7.18"}, ("Python (2.7.18, here ",)),
-        ({"sources": {}}, ("files (",)),
+        ({"machine": {"processor": "Abacus"}}, ("the processor (Abacus, here ",)),
+        ({"machine": {"backend": "stones"}}, ("what computes (stones, here )",)),
+        ({"machine": {"python": "2.7.18"}}, ("Python (2.7.18, here ",)),
+        ({"code": {"sources": {}}}, ("files (",)),
     ],
 )
 def test_a_replay_says_what_has_changed_since_the_run(folder, update, words) -> None:
     source = read_run(folder)
-    run = source.provenance.model_copy(update=update)
+    run = source.provenance
+    parts = {name: getattr(run, name).model_copy(update=part) for name, part in update.items()}
+    run = run.model_copy(update=parts)
     changed = replay(replace(source, provenance=run), (SCENE,), ("observer",), trust=True).changed
     assert len(changed) == len(words)
     assert all(map(str.startswith, changed, words))

@@ -3,11 +3,11 @@
 import json
 
 import pytest
-from toy_audits import FILE, TOY, command
+from cli_runs import faultpath as command
+from toy_audits import FILE, TOY
 
 import faultpath
 from faultpath import check
-from faultpath.api import trace
 
 ASKED = {"library": "carts", "scenes": 2, "workers": 0, "progress": False}
 
@@ -27,11 +27,3 @@ def test_a_check_of_a_name_and_of_an_object_is_that_of_the_command():
     assert [each.status for each in own.checks] == [each.status for each in report.checks]
     with pytest.raises(faultpath.UserError, match="an object cannot be sent to worker processes"):
         check(Own(), workers=2)
-
-
-def test_a_trace_tells_whom_a_fault_reaches():
-    report = trace(FILE, variant="calibrated", library="carts", steps=2, fault="gain:scale=0.6")
-    faulted = {read.reader for read in report.reads if read.altered_by}
-    assert faulted == {"controller.inverse", "observer.model"}
-    assert {read.step for read in report.reads} == {0, 1}
-    assert trace(faultpath.load_system(FILE), library="carts").variant == "calibrated"

@@ -6,7 +6,8 @@ import shutil
 from pathlib import Path
 
 import pytest
-from toy_audits import ROOT, command
+from cli_runs import faultpath as command
+from toy_audits import ROOT
 
 import faultpath
 from faultpath.core.errors import UserError
@@ -26,7 +27,7 @@ def test_comparing(toy: Path, tmp_path: Path) -> None:
     assert compared.runs[1].record == dock.record
     assert repr(compared) == f"<Comparison: {compared.headline}>"
     page = compared.report(tmp_path / "page.html")
-    assert dock.record.question.fault in page.read_text()
+    assert str(dock.record.question.fault) in page.read_text()
 
 
 @pytest.mark.parametrize(

@@ -1,12 +1,12 @@
 """Which treatments a question needs, and which of them are one and the same."""
 
 import pytest
-from audit_toys import INTERFACE, Paper, planned
 
-from faultpath.analyses.planning import Audit
+from faultpath.analyses.planning import Audit, plan_audit
 from faultpath.core.errors import UserError
-from faultpath.core.files.plain import yaml_text
-from faultpath.interface import read_interface
+from faultpath.faults import Fault, FaultText, Scale
+from faultpath.interface import Channel, Interface, Provenance, Source, read_interface
+from faultpath.run import SystemSpec
 from faultpath.run.question import (
     AuditQuestion,
     CheckQuestion,
@@ -14,7 +14,63 @@ from faultpath.run.question import (
     ScanQuestion,
     TraceQuestion,
 )
-from faultpath.system import Status, Variant
+from faultpath.system import Library, SceneRef, Status, System, Variant
+
+INTERFACE = Interface(
+    name="paper",
+    sources=(
+        Source(name="scale_reading", unit="kg", provenance=Provenance.MEASURED),
+        Source(name="thermometer", unit="K", provenance=Provenance.MEASURED),
+    ),
+    channels=(
+        Channel(
+            name="mass",
+            sources=("scale_reading",),
+            readers=("planner.cost", "planner.limit", "observer.model", "logger.file"),
+        ),
+        Channel(name="heat", sources=("thermometer",), readers=("logger.file",)),
+    ),
+)
+READS = {
+    "plain": {"planner.cost", "planner.limit"},
+    "limited": {"planner.limit"},
+    "observed": {"planner.cost", "planner.limit", "observer.model"},
+    "deaf": set(),
+    "logged": {"logger.file"},
+}
+
+
+def halve(size: float) -> tuple[Fault, ...]:
+    scale = Scale(factor=size)
+    return tuple(Fault(channel=name, intervention=scale) for name in ("mass", "heat"))
+
+
+class Paper(System):
+    """Lays out variants and never runs."""
+
+    name, control_dt_s, interface = "paper", 0.1, INTERFACE
+    variants = {name: Variant(name, name, frozenset(reads)) for name, reads in READS.items()}  # noqa: RUF012
+    fault_presets = {"both": halve}  # noqa: RUF012
+
+    def library(self, name: str) -> Library:
+        return Library(name, tuple(SceneRef(f"s{i}", i) for i in range(5)), f"{name}-1")
+
+    def fingerprint(self) -> str:
+        return "paper-1"
+
+    def run(self, variant, scenes, taps, seed):
+        raise AssertionError("planning runs nothing")
+
+
+def planned(baseline: str, repair: str, text: str, **changes) -> Audit:
+    system = Paper()
+    return plan_audit(
+        system,
+        SystemSpec(name="paper"),
+        AuditQuestion(baseline=baseline, repair=repair, fault=FaultText.read(text), **changes),
+        system.library("five"),
+    )
+
 
 COST, LIMIT, MODEL = ("mass", "planner.cost"), ("mass", "planner.limit"), ("mass", "observer.model")
 LOG, HEAT = ("mass", "logger.file"), ("heat", "logger.file")
@@ -85,11 +141,11 @@ def test_every_cell_has_a_row_and_treatments_that_are_the_same_run_once():
 
 def test_the_question_says_what_was_asked():
     audit = planned("plain", "observed", "mass:scale=2,onset=3", scenes=2, seeds=(4,))
-    question = audit.question
+    question, facts = audit.question, audit.facts
     assert (question.baseline, question.repair) == ("plain", "observed")
-    assert question.fault == "mass:scale=2,onset=3"
-    assert (question.library, question.library_hash) == ("five", "five-1")
-    assert (question.n_scenes, question.seeds) == (2, (4,))
+    assert str(question.fault) == "mass:scale=2,onset=3"
+    assert (facts.library, facts.library_hash) == ("five", "five-1")
+    assert (facts.n_scenes, question.seeds) == (2, (4,))
     assert audit.study.scenes == ("s0", "s1")
     faults = [fault for row in audit.study.rows for fault in row.treatment.faults]
     assert faults
@@ -118,9 +174,7 @@ def test_scenes_that_the_library_does_not_have(count):
 
 
 def test_a_module_may_not_be_called_like_a_condition(monkeypatch):
-    document = yaml_text(INTERFACE.model_dump(mode="json")).replace(
-        "observer.model", "shared.model"
-    )
+    document = INTERFACE.model_dump_json(indent=1).replace("observer.model", "shared.model")
     monkeypatch.setattr(Paper, "interface", read_interface(document))
     reads = frozenset({"planner.cost", "shared.model"})
     monkeypatch.setitem(Paper.variants, "observed", Variant("observed", "", reads))
@@ -129,10 +183,11 @@ def test_a_module_may_not_be_called_like_a_condition(monkeypatch):
 
 
 def test_the_question_names_its_primary_contrast_and_what_it_generalises_to():
-    assert planned("plain", "observed", "mass:scale=2").question.primary == "shared"
-    assert planned("deaf", "plain", "mass:scale=2").question.primary == "planner"
-    named = planned("plain", "observed", "mass:scale=2", primary="observer").question
-    assert (named.primary, named.generalise, named.trained) == ("observer", "scenes", False)
+    assert planned("plain", "observed", "mass:scale=2").facts.primary == "shared"
+    assert planned("deaf", "plain", "mass:scale=2").facts.primary == "planner"
+    named = planned("plain", "observed", "mass:scale=2", primary="observer")
+    assert (named.facts.primary, named.facts.trained) == ("observer", False)
+    assert named.question.generalise == "scenes"
     with pytest.raises(
         UserError, match=r"no condition 'pilot'.*correct, observer, planner, shared"
     ):
@@ -144,15 +199,15 @@ def test_newly_trained_models_need_trained_models_and_several_seeds(monkeypatch)
     with pytest.raises(UserError, match="no trained models to generalise to"):
         planned("plain", "observed", "mass:scale=2", **asked)
     monkeypatch.setattr(Paper, "trained", True)
-    question = planned("plain", "observed", "mass:scale=2", **asked).question
-    assert (question.generalise, question.trained) == ("models", True)
+    audit = planned("plain", "observed", "mass:scale=2", **asked)
+    assert (audit.question.generalise, audit.facts.trained) == ("models", True)
     with pytest.raises(UserError, match=r"4 seeds cannot show how .*--seeds 0,1,2,3,4"):
         planned("plain", "observed", "mass:scale=2", generalise="models", seeds=(0, 1, 2, 3))
 
 
 def test_the_question_knows_what_the_system_calls_its_ends(monkeypatch):
     monkeypatch.setattr(Paper, "ends", {Status.TIMEOUT: "missed"})
-    assert planned("plain", "observed", "mass:scale=2").question.ends == {"timeout": "missed"}
+    assert planned("plain", "observed", "mass:scale=2").facts.ends == {"timeout": "missed"}
 
 
 def test_audits_and_maps_run_in_scenes_that_nothing_was_chosen_by() -> None:

@@ -48,9 +48,8 @@ def test_an_audits_own_outcomes_are_decided_as_the_audit(tmp_path: Path) -> None
     assert turns[0] == turns[1]
     assert "reversal" in turns[1]
     assert again.record.headline == run.record.headline
-    assert again.record.question.judged is not None
-    assert again.record.question.judged.pairing == "hashes"
-    assert list(again.provenance.data) == [str(results)]
+    assert again.record.facts.pairing == "hashes"
+    assert list(again.provenance.code.data) == [str(results)]
 
     opened = faultpath.open_run(folder)
     assert opened.record == again.record
@@ -60,7 +59,9 @@ def test_an_audits_own_outcomes_are_decided_as_the_audit(tmp_path: Path) -> None
     assert "Other tools ran the trials" in page
     assert "Only what a tap delivers" not in page
     assert str(results) in page
-    assert json.loads((tmp_path / "run" / "record.json").read_text())["question"]["judged"] is None
+    assert (
+        json.loads((tmp_path / "run" / "record.json").read_text())["facts"]["pairing"] == "planned"
+    )
 
 
 KINDS: dict[str, tuple[Callable[[Path, str, Any], str], str, dict[str, Any]]] = {
@@ -88,8 +89,7 @@ def test_what_other_tools_write_is_read(
     assert (effect.condition, effect.scenes) == (AS_RUN, 30)
     assert effect.won == ((WINS, LOSSES),)
     assert run.record.secondary[0].time_s is None
-    assert run.record.question.judged is not None
-    assert run.record.question.judged.pairing == pairing
+    assert run.record.facts.pairing == pairing
     assert run.table().column("time_s").null_count == 60
     said = " ".join(run.record.sentences)
     assert ("by their keys alone" in said) == (pairing == "keys")

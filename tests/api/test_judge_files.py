@@ -187,8 +187,7 @@ def test_packed_logs_are_read_by_their_package(
     reading(monkeypatch, read)
     run = judged([packed(tmp_path / f"{variant}.eval") for variant in ("old", "new")], tmp_path)
     assert run.record.scenes == len(WON)
-    assert run.record.question.judged is not None
-    assert run.record.question.judged.pairing == "hashes"
+    assert run.record.facts.pairing == "hashes"
 
 
 def test_a_packed_log_needs_its_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -123,13 +123,19 @@ def replay(base: Path, here: Path, rng: Random) -> list[object]:
     shutil.copytree(base / "audit", here / "run")
     path = here / "run" / "record.json"
     content = json.loads(path.read_bytes())
-    content["question"] = altered(content["question"], rng)
-    if isinstance(content["question"], dict) and rng.random() < 0.2:
+    part = rng.choice(("question", "facts"))
+    content[part] = altered(content[part], rng)
+    if all(isinstance(content[n], dict) for n in ("question", "facts")) and rng.random() < 0.2:
         named = rng.choice(("os:system", "nowhere:create", f"{TOY}x", "run:create", "a", ":"))
-        content["question"] |= {"system": named, "options": {"command": "true"}}
+        content["question"] |= {"options": {"command": "true"}}
+        content["facts"] |= {"system": named}
     path.write_text(json.dumps(content))
     sign(here / "run")
-    return ["replay", "run", *rng.choice(([], ["--signals"], ["--scene", rng.choice(VALUES)]))]
+    return [
+        "replay",
+        "run",
+        *rng.choice(([], ["--signals"], ["--where"], ["--scene", rng.choice(VALUES)])),
+    ]
 
 
 CASES: dict[str, Case] = {

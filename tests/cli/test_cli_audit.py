@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pyarrow.parquet as pq
 import pytest
-from cli_runs import HERE, ROOT, Ended, audit, edit, faultpath, shards
+from cli_runs import ROOT, SYSTEMS, Ended, audit, faultpath, shards
 
 from faultpath.analyses.model import SHARED
 from faultpath.api.runs import open_run
@@ -16,7 +16,7 @@ FILES = {
     *("manifest.json", "outcomes.parquet", "traces.parquet", "record.json", "provenance.json"),
     *("system.json", "report.html", "table.md", "signals.parquet"),
 }
-BROKEN = f"{HERE / 'systems' / 'slow_toy.py'}:broken"
+BROKEN = f"{SYSTEMS / 'slow_toy.py'}:broken"
 SCENES = 40
 
 
@@ -42,10 +42,6 @@ def run(toy_run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def again(folder: Path, *arguments: object, **options: object) -> Ended:
     question = {"scenes": SCENES, "out": folder, "system": "examples/toy.py:create"} | options
     return audit(*arguments, **question)
-
-
-def contents(run: Path) -> dict[Path, bytes]:
-    return {p: p.read_bytes() for p in run.rglob("*") if p.is_file() and p.name != ".lock"}
 
 
 def test_an_audit_leaves_its_files_and_shows_the_reversal(toy_run):
@@ -88,27 +84,6 @@ def test_reports_are_made_again_from_what_is_stored(run):
     ended = faultpath("report", run)
     assert (ended.status, ended.err) == (0, "")
     assert {name: (run / name).read_bytes() for name in before} == before
-
-
-@pytest.mark.parametrize(
-    ("options", "change", "name"),
-    [({"fault": "gain:scale=0.7"}, {}, "faults"), ({}, {"study": 3}, "manifest")],
-    ids=["fault", "no study"],
-)
-def test_a_folder_of_another_run_is_left_alone(options, change, name, run):
-    edit(run / "manifest.json", lambda manifest: manifest.update(change))
-    before = contents(run)
-    again(run, **options).refused(str(run), name)
-    assert contents(run) == before
-
-
-def test_a_quick_look_grows_into_the_whole(toy_run, tmp_path, monkeypatch):
-    monkeypatch.chdir(ROOT)
-    look = tmp_path / "look"
-    assert again(look, scenes=20).status == 0
-    assert again(look, workers=2).status == 0
-    assert (look / "outcomes.parquet").read_bytes() == (toy_run / "outcomes.parquet").read_bytes()
-    assert json.loads((look / "provenance.json").read_text())["blocks_kept"] > 0
 
 
 def test_without_a_folder_the_run_is_called_after_its_question_and_not_its_place(tmp_path):

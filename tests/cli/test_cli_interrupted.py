@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from cli_runs import HERE, audit, audit_line, faultpath, shards, start, until
+from cli_runs import SYSTEMS, audit, audit_line, faultpath, shards, start, until
 
 from faultpath.cli.main import INTERRUPTED
 
@@ -33,7 +33,7 @@ def gate(tmp_path: Path) -> Path:
 
 
 def _options(gate: Path, out: Path) -> dict[str, object]:
-    system = f"{HERE / 'systems' / 'slow_toy.py'}:create"
+    system = f"{SYSTEMS / 'slow_toy.py'}:create"
     return {"system": system, "set": f"gate={gate}", "out": out, "scenes": SCENES}
 
 

@@ -119,17 +119,16 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("option", OUTPUTS)
-def test_no_file_of_a_run_is_replaced_by_what_is_no_part_of_it(option: str, run: Path) -> None:
-    before = (run / "report.html").read_bytes()
-    faultpath(*OUTPUTS[option], run / "report.html").refused("report.html belongs to the run")
-    assert (run / "report.html").read_bytes() == before
-
-
-@pytest.mark.parametrize("option", sorted(OUTPUTS))
-def test_a_file_of_somebody_else_is_not_replaced(option: str, tmp_path: Path) -> None:
+def test_no_file_of_a_run_or_of_somebody_else_is_replaced(
+    option: str, run: Path, tmp_path: Path
+) -> None:
     (mine := tmp_path / "mine").write_text("<html><!-- about faultpath -->")
+    page = run / "report.html"
+    before = page.read_bytes()
     faultpath(*OUTPUTS[option], mine).refused("mine is there already")
+    faultpath(*OUTPUTS[option], page).refused("report.html belongs to the run")
     assert mine.read_text() == "<html><!-- about faultpath -->"
+    assert page.read_bytes() == before
 
 
 @pytest.mark.parametrize(("first", "second"), [("audit", "map"), ("map", "audit")])

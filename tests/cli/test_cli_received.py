@@ -29,7 +29,7 @@ def test_the_system_that_a_record_names_is_not_imported(run: Path, tmp_path: Pat
     evil.write_text(f"open({str(harm)!r}, 'w')\n")
     shutil.copy(evil, run / "evil.py")
     for name in ("evil:create", "run/evil.py:create"):
-        edit(run / "record.json", lambda content, n=name: content["question"].update(system=n))
+        edit(run / "record.json", lambda content, n=name: content["facts"].update(system=n))
         sign(run)
         ended = faultpath("report", run)
         assert (ended.status, ended.err) == (0, "")
@@ -75,44 +75,38 @@ def test_a_changed_file_is_named_and_nothing_is_written(name: str, run: Path) ->
     assert (run / "report.html").stat().st_mtime_ns == before
 
 
-def unnamed(path: Path) -> None:
-    edit(path.parent / "provenance.json", lambda content: content["files"].pop(path.name))
-
-
-def pipe(path: Path) -> None:
-    path.unlink()
-    os.mkfifo(path)
-
-
-SPOILT = {
-    "no digest": (unnamed, "deliveries.json", ""),
-    "no file": (Path.unlink, "outcomes.parquet", ""),
-    "pipe": (pipe, "system.json", "it is a pipe"),
-    "pipe for the digests": (pipe, "provenance.json", "it is a pipe"),
-}
-
-
-@pytest.mark.parametrize(("spoil", "name", "says"), SPOILT.values(), ids=SPOILT)
-def test_what_is_no_file_or_has_no_digest_is_not_read(
-    spoil: Callable[[Path], object], name: str, says: str, run: Path
-) -> None:
-    spoil(run / name)
-    faultpath("report", run).refused(name, says)
-
-
-@pytest.mark.parametrize("name", ["../../etc/passwd", "x\ny.json"])
-def test_a_digest_of_a_file_elsewhere_is_refused(name: str, run: Path) -> None:
-    edit(run / "provenance.json", lambda content: content["files"].update({name: "0" * 64}))
-    faultpath("report", run).refused("provenance.json")
-
-
 def changed(name: str, change: Callable[[dict], object]) -> Change:
     return lambda run: edit(run / name, change)
 
 
-system, record, receipts = (
-    partial(changed, name) for name in ("system.json", "record.json", "deliveries.json")
+system, record, receipts, provenance = (
+    partial(changed, f"{name}.json") for name in ("system", "record", "deliveries", "provenance")
 )
+
+
+def without(name: str, make: Callable[[Path], object] = lambda path: None) -> Change:
+    """Return what takes a file away, and makes something else in its place."""
+
+    def change(run: Path) -> None:
+        (run / name).unlink()
+        make(run / name)
+
+    return change
+
+
+def digests(**names: str) -> Change:
+    return provenance(lambda content: content["files"].update(names))
+
+
+SPOILT: dict[str, tuple[str, Change]] = {
+    "no digest": ("deliveries.json", provenance(lambda c: c["files"].pop("deliveries.json"))),
+    "a digest of a file elsewhere": ("provenance.json", digests(**{"../../etc/passwd": "0" * 64})),
+    "a digest of a name of two lines": ("provenance.json", digests(**{"x\ny.json": "0" * 64})),
+    "no digests": ("earlier faultpath", provenance(lambda content: content.pop("files"))),
+    "no file": ("outcomes.parquet", without("outcomes.parquet")),
+    "a pipe": ("it is a pipe", without("system.json", os.mkfifo)),
+    "a pipe for the digests": ("it is a pipe", without("provenance.json", os.mkfifo)),
+}
 PLAN = {"low": [0, 0, 0], "high": [1, 1, 1], "start": [0, 0, 0], "goal": [1, 1, float("nan")]}
 PLAN |= {"prisms": [], "pillars": [], "title": "a"}
 TAP = {"channel": "x", "reader": "y.z", "faulted_steps": 1, "altered_steps": 1}
@@ -129,7 +123,8 @@ FORGED: dict[str, tuple[str, Change]] = {
     "no secondary outcomes": ("contradict", record(lambda c: c.update(secondary=[]))),
     "no cells": ("versions", record(lambda c: c.update(cells=[]))),
     "another count": ("count", record(lambda c: c["cells"][0].update(success=77))),
-    "another library": ("libraries", record(lambda c: c["question"].update(library_hash="x"))),
+    "another library": ("libraries", record(lambda c: c["facts"].update(library_hash="x"))),
+    "a question that is none": ("question", record(lambda c: c.update(question=5))),
     "another metric": ("'speed'", record(lambda c: c["question"].update(metric="speed"))),
     "a tap that is not there": (
         "injection points",
@@ -156,12 +151,16 @@ FORGED: dict[str, tuple[str, Change]] = {
 }
 
 
-@pytest.mark.parametrize(("says", "forge"), FORGED.values(), ids=FORGED)
-def test_a_forged_folder_with_right_digests_ends_in_one_sentence(
-    says: str, forge: Change, run: Path
+@pytest.mark.parametrize(
+    ("says", "change", "signed"),
+    [*((*case, False) for case in SPOILT.values()), *((*case, True) for case in FORGED.values())],
+    ids=[*SPOILT, *FORGED],
+)
+def test_a_spoilt_or_forged_folder_ends_in_one_sentence(
+    says: str, change: Change, signed: bool, run: Path
 ) -> None:
-    forge(run)
-    sign(run)
+    change(run)
+    sign(run) if signed else None
     faultpath("report", run).refused(says)
 
 
@@ -169,12 +168,6 @@ def test_a_replay_of_seeds_that_are_none_is_one_sentence(run: Path) -> None:
     edit(run / "record.json", lambda content: content["question"].update(seeds=[-1]))
     sign(run)
     faultpath("replay", run, "--trust").refused("seed")
-
-
-def test_an_older_folder_is_refused_in_one_sentence(run: Path) -> None:
-    edit(run / "provenance.json", lambda content: content.pop("files"))
-    (run / "system.json").unlink()
-    faultpath("report", run).refused("earlier faultpath", "run it again")
 
 
 @pytest.mark.parametrize("name", ["outcomes.parquet", "evidence.parquet"])

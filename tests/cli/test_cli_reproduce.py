@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from faultpath_paper.pages import table_4
 from faultpath_paper.reproduction import ReproductionRun, carry_out
 from faultpath_paper.run import ReproductionPlan
 from faultpath_paper.verb import show
+from faultpath_quadrotor.plant import module
 
 import faultpath
 from faultpath.analyses.tables import MISSING
@@ -24,8 +26,13 @@ DISPLAY = Display(command=("faultpath", "reproduce"))
 
 
 @pytest.fixture(scope="module")
-def done(tmp_path_factory: pytest.TempPathFactory, selection_held_out: None) -> ReproductionRun:
-    return carry_out(PLAN, Job(tmp_path_factory.mktemp("quick"), Here(), DISPLAY))
+def done(
+    tmp_path_factory: pytest.TempPathFactory, selection_held_out: None
+) -> Iterator[ReproductionRun]:
+    """A reproduction whose flights are short."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(module, "CONTROL_STEPS", 8)
+        yield carry_out(PLAN, Job(tmp_path_factory.mktemp("quick"), Here(), DISPLAY))
 
 
 def test_a_reproduction_leaves_its_files_claims_and_table(

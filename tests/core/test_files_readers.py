@@ -2,19 +2,19 @@
 
 import os
 import signal
-import socket
 from collections.abc import Callable, Iterator
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import pytest
+from no_files import THINGS
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import locked
 from faultpath.core.files.opening import contents
 from faultpath.core.files.parquet import Unreadable
-from faultpath.core.files.plain import Misread, read_json, read_yaml, yaml_text
+from faultpath.core.files.plain import Misread, read_json, read_yaml
 from faultpath.interface import read_interface
 from faultpath.learning.model_card import FitRecord, read_card
 from faultpath.run.store.folder import RunFolder, read_outcomes, read_regular
@@ -56,20 +56,6 @@ READERS: dict[str, tuple[str, Read]] = {
 """By what it reads: the name of the file, and the reader."""
 
 
-def _socket(path: Path) -> None:
-    with socket.socket(socket.AF_UNIX) as endpoint, pytest.MonkeyPatch.context() as patch:
-        patch.chdir(path.parent)  # the path of a socket may be a hundred bytes long
-        endpoint.bind(path.name)
-
-
-THINGS: dict[str, Callable[[Path], Any]] = {
-    "pipe": os.mkfifo,
-    "socket": _socket,
-    "device": lambda path: path.symlink_to("/dev/zero"),
-    "folder": lambda path: path.mkdir(),
-}
-
-
 @pytest.fixture(autouse=True)
 def _in_time() -> Iterator[None]:
     """End what would wait for ever."""
@@ -96,7 +82,7 @@ def test_what_is_no_file_is_refused_in_one_sentence(
     with pytest.raises((UserError, Unreadable)) as caught:
         read(path)
     assert "\n" not in str(caught.value)
-    assert path.exists() or thing == "socket"
+    assert path.exists()
 
 
 def test_the_lock_of_a_folder_is_a_file(tmp_path: Path) -> None:
@@ -169,11 +155,3 @@ def test_what_is_not_plainly_a_number_is_text() -> None:
 def test_a_byte_order_mark_is_no_part_of_a_text() -> None:
     for read in (read_json, lambda data: read_yaml(data).data):
         assert read(b"\xef\xbb\xbf{}") == {}
-
-
-def test_what_is_written_reads_back() -> None:
-    data = {
-        "texts": ["1e-3", "0x10", "yes", "~", "", "07", "1.5", "a: b", "\u2028"],
-        "n": [1e-7, 2],
-    }
-    assert read_yaml(yaml_text(data).encode()).data == data

@@ -21,7 +21,7 @@ from Basilisk.simulation import reactionWheelStateEffector, simpleNav, spacecraf
 from Basilisk.utilities import SimulationBaseClass
 from foreign_trials import ROOT, attempted, faulted, loaded
 
-from faultpath import audit, generator
+from faultpath import generator
 from faultpath.system import FunctionPlant, shared_objects
 
 EXAMPLE = ROOT / "examples" / "basilisk_attitude.py"
@@ -128,14 +128,3 @@ def test_a_fault_reaches_who_reads(example):
     fault = "wheel_speeds:freeze@filter,onset_s=50"
     trial = attempted(example.create(), "filtered", (SCENE,), fault)
     assert faulted(trial) == {"filter.wheel_speeds": STEPS - 100}
-
-
-def test_it_is_audited(example):
-    question = {"baseline": "gyro", "repair": "filtered", "fault": "wheel_speeds:freeze,onset_s=50"}
-    run = audit(example.create(), **question, scenes=2, signals=False)
-    assert [condition.name for condition in run.record.conditions] == [
-        "correct",
-        "control",
-        "filter",
-        "shared",
-    ]

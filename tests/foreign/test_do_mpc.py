@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from foreign_trials import ROOT, attempted, faulted, loaded
 
-from faultpath import audit, generator
+from faultpath import generator
 from faultpath.system import shared_objects
 
 do_mpc = pytest.importorskip("do_mpc")
@@ -53,17 +53,6 @@ def test_a_fault_at_one_reader_reaches_that_reader_alone(masses):
         done = attempted(system, "estimated", scenes, f"inertia:scale=1.1@{struck}")
         assert faulted(done) == {f"{struck}.inertia": STEPS}
         assert done.outcomes[0].metrics["off_rad"] != clean
-
-
-def test_the_audit_strikes_mhe_and_mpc_alone_and_together(masses, monkeypatch):
-    monkeypatch.setattr(masses, "STEPS", 4)
-    monkeypatch.setattr(masses, "JUDGED", 2)
-    question = {"baseline": "fixed", "repair": "estimated", "fault": "inertia:scale=1.1"}
-    how = {"scenes": 2, "workers": 0, "signals": False}
-    run = audit(masses.create(), **question, library="training", **how)
-    names = [condition.name for condition in run.record.conditions]
-    assert names == ["correct", "controller", "estimator", "shared"]
-    assert not run.record.findings
 
 
 def test_what_their_objects_share_is_what_the_page_says(masses):

@@ -10,7 +10,7 @@ pytest.importorskip("motulator")
 from foreign_trials import ROOT, attempted, faulted
 from motulator.common.utils import abc2complex
 
-from faultpath import audit, generator
+from faultpath import generator
 from faultpath.system import shared_objects
 
 EXAMPLE = "motulator_drive.py"
@@ -91,12 +91,3 @@ def test_what_its_parts_share_is_found(example) -> None:
     found = shared_objects(parts, run=lambda: sim.simulate(t_stop=0.2))
     said = (ROOT / "docs" / "motulator.md").read_text("utf-8")
     assert "\n".join(map(str, found)) in said
-
-
-def test_it_is_audited_with_a_path_for_each_part(example, tmp_path) -> None:
-    question = {"baseline": "fixed", "repair": "adapted", "fault": "psi_f:scale=1.11"}
-    how = {"workers": 0, "signals": False, "folder": tmp_path}
-    run = audit(example.create(), **question, scenes=2, library="training", **how)
-    conditions = [condition.name for condition in run.record.conditions]
-    assert conditions == ["correct", "current_ctrl", "observer", "reference_gen", "shared"]
-    assert sum(effect.void for effect in run.record.effects) == 0

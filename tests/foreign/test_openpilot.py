@@ -19,7 +19,7 @@ from opendbc.car import structs
 from opendbc.safety.tests.libsafety.libsafety_py import ffi, make_CANPacket
 from opendbc.safety.tests.test_ford import checksum
 
-from faultpath import audit, generator
+from faultpath import generator
 
 EXAMPLES = ("openpilot_speed.py", "openpilot_car.py")
 CARS = ("ford", "tesla", "nissan")
@@ -159,19 +159,6 @@ def test_each_version_limits_by_the_speed_that_it_is_named_for(example, monkeypa
     rear, all_four = 1.2 * last["two-messages"], 1.1 * last["two-messages"]
     assert last["shipped"] == pytest.approx(rear, rel=0.02)
     assert last["filtered"] == pytest.approx(all_four, rel=0.02)
-
-
-def test_it_is_audited(example, tmp_path) -> None:
-    question = {"baseline": "shipped", "repair": "recovers", "fault": "tyre:scale=1.05"}
-    how = {"workers": 0, "signals": False, "folder": tmp_path}
-    run = audit(example.create("ford"), **question, scenes=2, library="training", **how)
-    assert [condition.name for condition in run.record.conditions] == [
-        "correct",
-        "controller",
-        "firmware",
-        "shared",
-    ]
-    assert sum(effect.void for effect in run.record.effects) == 0
 
 
 def test_faultpath_takes_few_lines_beside_a_plain_loop() -> None:

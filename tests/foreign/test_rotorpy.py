@@ -21,7 +21,7 @@ from rotorpy.vehicles.multirotor import Multirotor
 from rotorpy.world import World
 from scipy.spatial.transform import Rotation
 
-from faultpath import audit, generator
+from faultpath import generator
 from faultpath.system import shared_objects
 
 SCENE, STEPS = "seed/7", 60
@@ -123,15 +123,6 @@ def test_a_fault_at_one_object_reaches_its_reads_alone(example):
         trial = attempted(system, "fed-forward", (SCENE,), f"mass:scale=0.8@{struck}")
         assert set(faulted(trial)) == {f"{struck}.mass"}
         assert trial.outcomes[0].metrics != exact.outcomes[0].metrics
-
-
-def test_it_is_audited(example, monkeypatch):
-    monkeypatch.setattr(example, "STEPS", 12)
-    system = example.create()
-    asked = {"baseline": "alone", "repair": "fed-forward", "fault": "mass:scale=0.8"}
-    run = audit(system, **asked, library="training", scenes=2, workers=0, signals=False)
-    conditions = [condition.name for condition in run.record.conditions]
-    assert conditions == ["correct", "controller", "feedforward", "filter", "shared"]
 
 
 def test_what_their_objects_share_is_what_the_page_says():

@@ -13,7 +13,6 @@ from foreign_trials import ROOT, attempted, faulted
 if find_spec("stable_worldmodel") is None:  # importing it is the example's, which knows how
     pytest.skip("stable-worldmodel is not installed", allow_module_level=True)
 
-from faultpath import audit
 
 SCENES = ("seed/20", "seed/21")
 
@@ -107,15 +106,6 @@ def test_a_calibrated_camera_changes_no_pixel_and_a_rectified_picture_is_its(exa
     shown = model.camera(picture, 0.7, np.array([2.0, -1.0]), rectifies=True)
     apart = np.abs(shown.astype(int) - picture)
     assert apart[:, 4:-4, 4:-4].max() <= 1  # what left the picture is lost
-
-
-def test_it_is_audited(example, monkeypatch):
-    monkeypatch.setattr(example, "STEPS", 10)
-    question = {"baseline": "plain", "repair": "rectified", "fault": "exposure:scale=0.85"}
-    how = {"scenes": 2, "workers": 0, "signals": False}
-    run = audit(example.create(), **question, library="training", **how)
-    names = [condition.name for condition in run.record.conditions]
-    assert names == ["correct", "goal", "observation", "shared"]
 
 
 def test_the_models_are_fitted(example, tmp_path):

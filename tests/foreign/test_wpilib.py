@@ -13,7 +13,7 @@ from wpimath.estimator import DifferentialDrivePoseEstimator
 from wpimath.geometry import Pose2d, Rotation2d, Transform2d
 from wpimath.kinematics import DifferentialDriveKinematics
 
-from faultpath import audit, generator
+from faultpath import generator
 from faultpath.core.errors import SystemMistake
 from faultpath.loop import Inputs, Port
 from faultpath.system import tapped, writes
@@ -125,19 +125,6 @@ def test_compiled_code_is_tapped_where_it_is_called_by_the_name_of_an_argument()
     assert made_with("trackWidth") == [0.7]
     with pytest.raises(SystemMistake, match="calls DifferentialDriveKinematics, which is compiled"):
         made_with("track")
-
-
-def test_it_is_audited_at_odometry_and_wheel_command(wheels):
-    question = {"baseline": "default", "repair": "trusting", "fault": FAULT}
-    how = {"scenes": 2, "workers": 0, "signals": False}
-    run = audit(wheels.create(), **question, library="training", **how)
-    assert [effect.condition for effect in run.record.effects] == [
-        "correct",
-        "drive",
-        "odometry",
-        "shared",
-    ]
-    assert sum(effect.void for effect in run.record.effects) == 0
 
 
 def test_ten_parameters_say_how_wrong_they_may_be(wheels):

@@ -246,15 +246,17 @@ def of_record(record: Any) -> dict[str, Any]:
                 **{key: entry["result"][key] for key in ("p_star", "pieces", "kind", "regions")},
                 "curve": digest(entry["curve"]),
             }
-            for entry in result[name]
+            for entry in result["break_evens"]
+            if entry["over"] == over
         }
-        for name in ("break_even", "break_even_beta")
+        for name, over in (("break_even", "frequency"), ("break_even_beta", "beta"))
     }
     cells = {
         f"{cell['variant']}, {cell['condition']}": [cell[name] for name in _OF_A_CELL]
         for cell in result["cells"]
     }
-    whole = {name: result[name] for name in ("scenes", "invalid", "scenes_needed", "stopped")}
+    whole = {name: result[name] for name in ("scenes", "invalid", "stopped")}
+    whole["scenes_needed"] = result["testing"]["scenes_needed"]
     return {**whole, "effects": effects, "changes": changes, **even, "cells": cells}
 
 
@@ -272,7 +274,8 @@ def of_map(record: Any) -> dict[str, Any]:
         "surface": digest([result["surface"]["difference"], result["surface"]["sign"]]),
         "flips": [list(flip.values()) for flip in result["flips"]],
         "curve": curve(joint["curve"]),
-        **{name: joint[name] for name in ("asked", "estimates", "undecided", "regions")},
+        "asked": joint["requested"],
+        **{name: joint[name] for name in ("estimates", "undecided", "regions")},
         **{f"joint {name}": joint[name] for name in ("outside", "critical")},
     }
 

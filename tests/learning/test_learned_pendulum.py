@@ -31,7 +31,7 @@ run = faultpath.audit(
 )
 print([condition.name for condition in run.record.conditions])
 print("failed" in run.table().column("status").to_pylist() or bool(run.record.findings))
-print(sorted(name.rpartition("/")[2] for name in run.provenance.data))
+print(sorted(name.rpartition("/")[2] for name in run.provenance.code.data))
 shipped = faultpath.load_system(example)
 print({len(shipped.modules(name, 0)) for name in shipped.variants})
 """

@@ -135,12 +135,6 @@ def test_a_fault_that_reached_another_is_an_error() -> None:
         check_delivered(replace(receipts, taps=strange), named, last)
 
 
-def test_a_named_tap_where_nothing_acts_is_an_error() -> None:
-    named = {("mass", "predictor.dynamics"): ["mass scaled by 2"]}
-    with pytest.raises(NotDelivered, match="'mass scaled by 2' names it, but did not act there"):
-        check_delivered(make().receipts(), named, np.array([5, 5]))
-
-
 @pytest.mark.parametrize(
     ("reached", "error", "sentence"),
     [

@@ -28,16 +28,24 @@ def case(isolated: Sign, shared: Sign, *, reversal: bool = False) -> central.Cas
 
 
 def test_the_answer_is_a_reversal_only_where_a_run_decides_one() -> None:
+    fall = {"change": central.PrintedEffect(text="−9.0", sign=-1)}
     for signs in ((0, 0), (1, 0), (0, -1), (1, -1), (-1, 1)):
         assert "did not reproduce" in central.answer([case(*signs)])
-    one = case(1, -1, reversal=True)
-    assert "appeared" in central.answer([case(0, 0), one])
-    gone = case(1, 0).model_copy(update={"change": central.PrintedEffect(text="−9.0", sign=-1)})
-    assert "gain does not carry over" in central.answer([one, gone])
-    smaller = case(1, 1).model_copy(update={"change": gone.change})
-    assert "carry over" not in central.answer([smaller])
-    assert "the reversal was significant" in central.detail([one, gone])
-    assert "significant" not in central.answer([gone])
+    for signs in ((0, 0), (0, -1), (1, 1), (-1, -1)):
+        assert "did not reproduce" in central.answer([case(*signs).model_copy(update=fall)])
+    one = case(1, -1, reversal=True).model_copy(update=fall)
+    gone = case(1, 0).model_copy(update=fall)
+    for cases, shown in (
+        ([gone], "is not shown"),
+        ([one], "is shown"),
+        ([one, gone], "is shown in 1 of 2 runs"),
+        ([gone, gone], "is shown in 0 of 2 runs"),
+        ([case(0, 0), one], "is shown in 1 of 2 runs"),
+    ):
+        answer = central.answer(cases)
+        assert answer.startswith("The gain does not carry over to the shared error")
+        assert answer.endswith(f"a loss there, as in the paper, {shown}")
+    assert "the loss was significant" in central.detail([one, gone])
     assert "No run" in central.answer([])
     assert central.detail([]) == central.by_training(one) == ""
     for count, verb in ((0, "show"), (1, "shows"), (3, "show")):

@@ -25,7 +25,7 @@ ERROR = table_2.error_under(0.1)
 
 
 ROWS = tuple(TableRow("", (of,)) for of in (success(NOMINAL), success(FAULTY), centimetres(ERROR)))
-ONE = Page("one", "One", (TableSpec("one", "One", ("Success, %",), ROWS),))
+ONE = Page("one", (TableSpec("one", "One", ("Success, %",), ROWS),))
 
 
 @pytest.fixture(scope="module")

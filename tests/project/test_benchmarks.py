@@ -1,11 +1,12 @@
 """The page on performance says what was measured, and what was measured is complete."""
 
 import json
+import re
 from pathlib import Path
 
-from benchmarks import page, planning
+from benchmarks import cost, page, physics, planning
 from benchmarks.peers import batched
-from benchmarks.results import DEVICE, Target, load, record
+from benchmarks.results import DEVICE, LOOP_STEPS, TAPS, Target, load, record
 from benchmarks.rows import ROWS, SIDES
 
 ROOT = Path(__file__).parents[2]
@@ -23,6 +24,30 @@ def test_every_row_was_measured_or_says_why_not_and_is_shown():
         else:
             assert (each.peer is None) == (each.ratio is None)
             assert (each.target is None) == (each.met is None)
+
+
+def test_sizes_in_the_text_are_those_that_are_measured():
+    text = (ROOT / "docs" / "performance.md").read_text("utf-8")
+    words = re.sub(r"<!-- begin:(\S+) -->.*?<!-- end:\1 -->", "", text, flags=re.DOTALL).split()
+    scenes, seeds = physics.outcomes()[0].shape
+    for sizes in (
+        f"{planning.CANDIDATES} candidates, {planning.HORIZON} steps",
+        f"{physics.VEHICLES} vehicles",
+        f"{physics.SCENES} selection scenes",
+        f"{scenes} scenes and {seeds} seeds with {physics.RESAMPLES:,} resamples",
+        f"{TAPS} taps",
+        f"an audit of {cost.SCENES} scenes",
+        f"a CSV file of {cost.JUDGED:,} scenes",
+        f"the audit of {cost.AUDITED:,} scenes",
+    ):
+        assert sizes in " ".join(words)
+
+
+def test_the_loop_s_row_tells_what_a_tap_costs():
+    loop = record("Loop", LOOP_STEPS, [2000.0], [10_000.0], "bare loop")
+    table = page.rows([loop])
+    assert "| Loop | 500 µs a step | 100 (bare loop) | 0.2" in table
+    assert "- Loop: 40 µs a tap and step more than the bare loop, at 10 taps" in table
 
 
 def test_every_figure_of_a_gpu_names_its_command_or_says_that_it_was_entered_by_hand():

@@ -1,12 +1,12 @@
 """The study of where verdicts carry over: what is said comes from decisions, and it resumes."""
 
 import blocks
-import carry_blocks
 import numpy as np
 import pytest
 import study
 from carry_design import Cell, Design, Flown
 from carry_verdicts import lead, moves, overall, sentences, settled, sign
+from documents import BLOCKS
 
 from faultpath.api.display import Display
 from faultpath.core.errors import Stopped, UserError
@@ -132,7 +132,7 @@ def test_what_is_stopped_resumes_and_a_variant_of_two_questions_flies_once(tmp_p
     assert sum(each.trials for each in resumed.rounds) < whole.trials
 
     monkeypatch.setattr(blocks, "REFERENCE", tmp_path)
-    assert "4 cells" in carry_blocks.cost("whole")
-    assert "Left out: planner rrt" in carry_blocks.cost("whole")
-    assert "| cells | 1 | 1 | 1 | 1 |" in carry_blocks.table("whole")
-    assert "inconclusive in the only cell" in carry_blocks.verdicts("whole")
+    assert "4 cells" in BLOCKS["carry:cost"]("whole")
+    assert "Left out: planner rrt" in BLOCKS["carry:cost"]("whole")
+    assert "| cells | 1 | 1 | 1 | 1 |" in BLOCKS["carry:table"]("whole")
+    assert "inconclusive in the only cell" in BLOCKS["carry:said"]("whole")

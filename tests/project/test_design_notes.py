@@ -14,8 +14,8 @@ from typing import Any
 import pytest
 import typer
 import yaml
-from faultpath_quadrotor.choices import DeviceName
-from faultpath_quadrotor.models import PREDICTORS, predictor
+from faultpath_quadrotor.choices import PREDICTORS, DeviceName
+from faultpath_quadrotor.models import predictor
 from faultpath_quadrotor.options import QuadrotorOptions
 from faultpath_quadrotor.perception import labels
 from faultpath_quadrotor.planners import CostWeights
@@ -134,7 +134,7 @@ def computed() -> Iterator[tuple[str, str, Any]]:
     yield "plant", "thrust-to-weight #.", round(VehicleParameters().thrust_to_weight, 2)
     yield "plant", "ranges has #,", round(weakest, 2)
     yield "plant", "within +-# degrees", PLATFORM.winds.levels["L3"].elevation_deg
-    yield "predictors", "# kinds behind", len({type(m.build()) for m in PREDICTORS.values()})
+    yield "predictors", "# kinds behind", len({type(predictor(name, None)) for name in PREDICTORS})
     yield "predictors", "paper's #k and #k", (thousands("wm-a"), thousands("wm-u"))
     yield "reconstruction", "The # windows of the wind", COUNTS["wind"]
     yield "reconstruction", "batch #, # epochs", (fitted.batch_size, fitted.epochs)

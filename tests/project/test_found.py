@@ -1,8 +1,11 @@
 """The word that the table of all audits has for what an isolated test says of deployment."""
 
-import found_blocks
+import re
+
+import comparison
 import pytest
-from found_blocks import ALONE, MISSED, OPEN, REVERSAL, SAME, SIZE, Effect, verdict
+from comparison import ALONE, MISSED, OPEN, REVERSAL, SAME, SIZE, Effect, verdict
+from documents import BLOCKS
 
 
 @pytest.mark.parametrize(
@@ -23,11 +26,9 @@ def test_only_what_is_decided_makes_a_word(alone, shared, turn, word) -> None:
 
 
 def test_the_table_has_every_audit_and_the_module_that_says_least() -> None:
-    head, _, *rows = found_blocks.table().splitlines()
-    rooms = (found_blocks.audits_of_rooms(name) for name in found_blocks.CAMERAS)
-    studies = [*found_blocks.audits_of(), *(audit for each in rooms for audit in each)]
-    groups = found_blocks.grouped()
-    assert sum(map(len, groups)) == len(found_blocks.PAGES) + len(studies)
+    head, _, *rows = BLOCKS["found"]().splitlines()
+    groups = comparison.grouped()
+    assert sum(map(len, groups)) == len([*comparison.every_audit()]) > len(comparison.PAGES)
     for group in groups:
         assert len({(audit.word, audit.effects["shared"].sign) for audit in group}) == 1
     assert len(rows) == len(groups)
@@ -37,9 +38,20 @@ def test_the_table_has_every_audit_and_the_module_that_says_least() -> None:
     assert docking.endswith("| **reversal** |")
 
 
-def test_the_counts_are_those_of_all_audits() -> None:
-    *systems, total = (row.split("|")[2:-1] for row in found_blocks.counts().splitlines()[2:])
-    numbers = [[int(cell.strip() or 0) for cell in row] for row in (*systems, total)]
-    assert all(row[0] == sum(row[1:]) for row in numbers)
-    assert [sum(column) for column in zip(*numbers[:-1], strict=True)] == numbers[-1]
-    assert numbers[-1][0] == sum(map(len, found_blocks.grouped()))
+def test_every_system_has_a_row_that_counts_its_audits() -> None:
+    rows = [row.split("|")[2:-1] for row in BLOCKS["counts"]().splitlines()[2:]]
+    assert sum(int(audits) for audits, _ in rows) == sum(map(len, comparison.grouped()))
+    for audits, answer in rows:
+        counts = [int(text) for text in re.findall(r"\((\d+)\)", answer)]
+        assert sum(counts) == (int(audits) if int(audits) > 1 else 0)
+
+
+@pytest.mark.parametrize(
+    ("words", "answer"),
+    [
+        ([REVERSAL], "no: the better version is the worse one"),
+        ([OPEN, ALONE, OPEN], "no: the difference that it shows is gone (1); not decided (2)"),
+    ],
+)
+def test_an_answer_counts_only_several_audits(words, answer) -> None:
+    assert comparison.answer(words) == answer

@@ -4,8 +4,8 @@ import json
 import re
 from pathlib import Path
 
-import latent_blocks
 import pytest
+import studies
 from blocks import REFERENCE, ROOT
 from documents import BLOCK, documents
 
@@ -86,8 +86,8 @@ def test_the_answer_about_one_camera_follows_from_its_studies(
     ]
     turns = {"turns": {"observation": "reversal" if signs == (-1, -1) else "none"}}
     study = {"audits": [turns, {"turns": {}}], "baseline": rows}
-    monkeypatch.setattr(latent_blocks, "figures_of", lambda *name: study)
-    text = latent_blocks.answer("marked", "blank")
+    monkeypatch.setattr(studies, "figures_of", lambda *name: study)
+    text = studies.camera_answer(("marked", "blank"))
     lead = (
         "A reversal is significant in 2 of 4 audits." if signs == (-1, -1) else "No reversal in 4"
     )

@@ -51,7 +51,7 @@ def test_every_variant_of_the_paper_was_flown(run: Run) -> None:
 def test_the_outcomes_are_those_that_the_provenance_names() -> None:
     named = RunProvenance.model_validate_json((RUN / "provenance.json").read_bytes())
     digest = hashlib.sha256((RUN / "outcomes.parquet").read_bytes()).hexdigest()
-    assert named.outcomes_sha256 == digest
+    assert named.files["outcomes.parquet"] == digest
 
 
 def test_the_report_shows_every_claim_of_the_ledger(run: Run) -> None:

@@ -1,5 +1,6 @@
 """A profile of the toy's audit: what a fault's text, an effect and a question pass on their way."""
 
+import ast
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
@@ -10,9 +11,9 @@ from typing import Any
 import pytest
 
 import faultpath
-from faultpath.analyses.question import Question
+from faultpath.analyses.facts import ComparisonFacts
 from faultpath.faults import Fault, FaultText, Intervention, resolve
-from faultpath.run.question import AuditQuestion
+from faultpath.run.question import AuditCall, AuditQuestion
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = str(ROOT / "src" / "faultpath")
@@ -20,7 +21,7 @@ SCENES = 11
 """So many that an effect is a number which nothing else is."""
 MOST = 100
 """Instances of a class that are looked into: what carries an effect or a question has few."""
-QUESTIONS = (AuditQuestion, Question)
+QUESTIONS = (AuditCall, AuditQuestion, ComparisonFacts)
 """They keep the text and the faults for whoever reads the run."""
 READ, RESOLVED = FaultText.read.__func__.__code__, resolve.__code__  # pyright: ignore[reportFunctionMemberAccess]
 
@@ -154,5 +155,16 @@ def test_an_effect_passes_eight_classes_and_a_question_four(tmp_path: Path) -> N
         return any(is_question(part) for part in (holder, *fields(holder)))
 
     questions = profiled(question, tmp_path / "question", *rooms, **asked)
-    assert {AuditQuestion, Question} <= questions.classes
+    assert {AuditCall, AuditQuestion} <= questions.classes
     assert len(questions.classes) <= 4, questions.classes
+
+
+def test_a_class_has_at_most_fifteen_fields() -> None:
+    sizes: dict[str, int] = {}
+    for file in Path(SOURCE).rglob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text("utf-8"))):
+            if isinstance(node, ast.ClassDef):
+                fields = [part for part in node.body if isinstance(part, ast.AnnAssign)]
+                fields = [part for part in fields if "ClassVar" not in ast.unparse(part.annotation)]
+                sizes[f"{file.name}: {node.name}"] = len(fields)
+    assert not {name: size for name, size in sizes.items() if size > 15}

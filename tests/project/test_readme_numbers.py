@@ -57,13 +57,12 @@ def test_the_code_that_is_here_gives_the_whole_of_a_quick_reference(name: str, t
 
 
 def plan(record: DecisionRecord) -> Audit:
-    asked = record.question
-    place = asked.system if ".py:" not in asked.system else str(ROOT / asked.system)
-    spec = SystemSpec(name=place, options=asked.options)
+    question, facts = record.question, record.facts
+    assert isinstance(question, AuditQuestion)
+    place = facts.system if ".py:" not in facts.system else str(ROOT / facts.system)
+    spec = SystemSpec(name=place, options=question.options)
     system = load_system(spec)
-    same = {name: getattr(asked, name) for name in ("baseline", "repair", "fault", "seeds")}
-    question = AuditQuestion(**same, scenes=asked.n_scenes)
-    return plan_audit(system, spec, question, system.library(asked.library))
+    return plan_audit(system, spec, question, system.library(facts.library))
 
 
 def recipe(target: str, given: str = "") -> list[str]:
@@ -74,13 +73,14 @@ def recipe(target: str, given: str = "") -> list[str]:
 
 
 def test_make_runs_the_main_references() -> None:
-    question, words = record_of("quadrotor-L3").question, recipe("audit")
-    assert (question.system, question.seeds) == ("quadrotor", (0,))
+    record, words = record_of("quadrotor-L3"), recipe("audit")
+    question, facts = record.question, record.facts
+    assert (facts.system, facts.seeds) == ("quadrotor", (0,))
     assert dict(zip(words[::2], words[1::2], strict=True)) == {
         "--baseline": question.baseline,
         "--repair": question.repair,
-        "--fault": question.fault,
-        "--library": question.library,
+        "--fault": str(question.fault),
+        "--library": facts.library,
         "--wind": question.options["wind"],
     }
     confirm, decision = (

@@ -2,6 +2,7 @@
 
 import sys
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 import references
@@ -17,14 +18,18 @@ def test_an_example_of_another_package_runs_where_that_is_installed() -> None:
 
 def test_a_run_of_another_kind_of_processor_says_that_trials_may_end_differently() -> None:
     toy = references.load("toy")
-    here = toy.provenance.model_copy(update={"processor": references.processor()})
-    assert references.elsewhere(replace(toy, provenance=here)) == ""
-    there = toy.provenance.model_copy(update={"processor": "Abacus"})
-    assert "flown on Abacus" in references.elsewhere(replace(toy, provenance=there))
+
+    def words(processor: str) -> str:
+        machine = toy.provenance.machine.model_copy(update={"processor": processor})
+        provenance = toy.provenance.model_copy(update={"machine": machine})
+        return references.elsewhere(replace(toy, provenance=provenance))
+
+    assert words(references.processor()) == ""
+    assert "flown on Abacus" in words("Abacus")
 
 
 @pytest.fixture
-def run_again(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+def run_again(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
     """Two runs, of which the code repeats one; the names of those that are run again."""
     toy, names = references.load("toy"), list[str]()
     whole = Repeats(trials=800, sampled=2, repeated=2, near=2)
@@ -32,6 +37,8 @@ def run_again(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     results = {"same": whole, "other": lost}
     runs = {name: replace(toy, name=name) for name in results}
     monkeypatch.setattr(references, "by_time", lambda: runs)
+    monkeypatch.setattr(references, "state", lambda run: "")
+    monkeypatch.setattr(references, "KEPT", tmp_path)
     monkeypatch.setattr(references.repeats, "write", lambda run: results[run.name])
     monkeypatch.setattr(references, "checkout", lambda: "0" * 40)
     monkeypatch.setattr(references, "fly", lambda run, _: names.append(run.name))
@@ -53,3 +60,15 @@ def test_only_a_run_that_does_not_repeat_is_run_again(run_again, monkeypatch) ->
     with pytest.raises(SystemExit):
         references.main()
     assert run_again == ["other"]
+
+
+def test_a_sample_is_repeated_once_by_the_same_code(run_again, monkeypatch) -> None:
+    repeated: list[str] = []
+    toy = references.load("toy")
+    write = lambda run: [repeated.append(run.name), toy.repeats][1]  # noqa: E731
+    monkeypatch.setattr(references.repeats, "write", write)
+    for state in ("", "one", "one", "two", ""):
+        monkeypatch.setattr(references, "state", lambda run, state=state: state)
+        assert references.show([toy]) == {"toy": toy.repeats}
+        repeated.append(state)
+    assert repeated == ["toy", "", "toy", "one", "one", "toy", "two", "toy", ""]

@@ -57,6 +57,15 @@ def test_every_kind_of_fault_has_its_picture_or_line() -> None:
     assert set(re.findall(r"(?m)^\| (?:!\[|`)(\w+)[\]`]", page)) == set(INTERVENTIONS)
 
 
+def test_the_start_names_every_page_and_the_guide_for_assistants_leads_to_pages() -> None:
+    start = (ROOT / "docs" / "index.md").read_text("utf-8")
+    pages = {page.name for page in (ROOT / "docs").glob("*.md")} - {"index.md"}
+    assert pages - set(re.findall(r"\]\(([\w-]+\.md)\)", start)) == set()
+    guide = re.findall(r"\]\((.*?)\)", (ROOT / "llms.txt").read_text("utf-8"))
+    assert "docs/for-assistants.md" in guide
+    assert [to for to in guide if not (ROOT / to).is_file()] == []
+
+
 @pytest.mark.slow
 def test_the_site_builds_and_is_whole(tmp_path: Path) -> None:
     built = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-d", tmp_path / "trees"]
@@ -68,6 +77,11 @@ def test_the_site_builds_and_is_whole(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stdout + done.stderr
     shown = [*site.rglob("*.html"), *site.rglob("*.css")]
     assert [file.name for file in shown if OUTWARD.search(file.read_text("utf-8"))] == []
+    start = (site / "index.html").read_text("utf-8")
+    assert 10 < start.count("toctree-l1") <= 20
+    assert 'href="reference/map-toy/report.html"' in start
+    guide = re.findall(r"\]\((.*?)\)", (site / "llms.txt").read_text("utf-8"))
+    assert [to for to in guide if not (site / to).is_file()] == []
     assert "_held" not in (site / "api" / "front.html").read_text("utf-8")
     for notebook in (ROOT / "docs" / "notebooks").glob("*.ipynb"):
         shown = (site / "notebooks" / f"{notebook.stem}.html").read_text("utf-8")

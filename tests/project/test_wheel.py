@@ -96,6 +96,7 @@ def test_the_engine_is_installed_and_audits_without_compiler_or_extra(
     assert "License-Expression: Apache-2.0\nLicense-File: LICENSE\n" in about
     assert any(name.endswith("licenses/LICENSE") for name in names)
     assert not any(name.endswith(".so") for name in names)
+    assert "faultpath/schemas/record.schema.json" in names
 
     python = environment(tmp_path / "environment")
     outside = {"PYTHONPATH": "", "NO_COLOR": "1", "COLUMNS": "200"}

@@ -9,8 +9,7 @@ import torch
 from faultpath_quadrotor.scenes.library import Library, as_text
 from faultpath_quadrotor.scenes.scene import ArenaBounds, Box, Cylinder, Scene, Topology
 from faultpath_quadrotor.system import Quadrotor
-from faultpath_quadrotor.training.pool import FlightData, encode_episodes, encode_rows
-from faultpath_quadrotor.training.recorded import Flights
+from faultpath_quadrotor.training.recorded import FlightData, Flights
 from faultpath_quadrotor.vehicle import VehicleParameters
 
 from faultpath.core.arrays import Array
@@ -131,8 +130,7 @@ Point = tuple[float, float, float]
 
 def in_memory(flights: Flights) -> FlightData:
     """Return recorded flights as they come back from their files."""
-    every = range(len(flights.steps))
-    return FlightData.decode("test", encode_rows(every, flights), encode_episodes(every, flights))
+    return FlightData.of("test", flights.tensors())
 
 
 def spread(scenes: Sequence[Scene], count: int, margin: float = 0.0) -> torch.Tensor:

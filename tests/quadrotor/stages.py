@@ -95,7 +95,7 @@ def state_filter() -> Stages:
             for name, sensor in sensors().items()
         }
         known = estimator.begun(read) if known is None else estimator.taken(known, read, step)
-    yield "filter", (known, estimator.said(known, read))
+    yield "filter", (known, estimator.estimates(known, read))
 
 
 def told(step: int) -> Delivered:

@@ -90,14 +90,12 @@ SMALL = ClearanceRecipe(images=1, in_view=16, near_surface=16, around=8)
 
 @pytest.fixture(scope="module")
 def collected(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("data")
-    clearance_data.collect(folder, SMALL, workers=0)
-    return folder
+    return clearance_data.collect(tmp_path_factory.mktemp("data"), SMALL, workers=0)
 
 
 @pytest.fixture(scope="module")
 def samples(collected: Path) -> Samples:
-    return clearance_data.read(collected, SMALL)
+    return clearance_data.read(collected)
 
 
 def test_labels_are_those_of_the_stored_images_and_samples_of_recipe_and_scene_alone(samples):
@@ -116,25 +114,11 @@ def test_labels_are_those_of_the_stored_images_and_samples_of_recipe_and_scene_a
     assert not torch.equal(other.points, again.points)
 
 
-def test_a_killed_collection_goes_on_and_ends_with_the_same_bytes(collected: Path):
-    path = clearance_data.provenance_path(collected)
-    shards = sorted(path.with_suffix("").glob("*/*.safetensors"))
-    before = {shard: shard.read_bytes() for shard in shards}
-    made = shards[10].stat().st_mtime_ns
-    path.unlink()
-    shards[3].unlink()
-    told: list[tuple[int, int]] = []
-    clearance_data.collect(collected, SMALL, 0, lambda done, total: told.append((done, total)))
-    assert told == [(99, 100), (100, 100)], "only what is missing is made"
-    assert shards[10].stat().st_mtime_ns == made
-    assert {shard: shard.read_bytes() for shard in shards} == before
-
-
-def test_another_recipe_and_missing_data_are_refused(collected: Path, tmp_path: Path):
-    with pytest.raises(UserError, match="another recipe"):
-        clearance_data.collect(collected, SMALL.model_copy(update={"seed": 9}))
-    with pytest.raises(UserError, match="collect it first"):
-        clearance_data.read(tmp_path, SMALL)
+def test_another_recipe_is_refused(collected: Path):
+    with pytest.raises(UserError, match="collected with another 'seed'"):
+        clearance_data.collect(collected.parent, SMALL.model_copy(update={"seed": 9}))
+    with pytest.raises(UserError, match="collected with another 'settings'"):
+        clearance_data.collect(collected.parent, SMALL.model_copy(update={"images": 2}))
 
 
 def test_validation_scenes_are_never_trained_on(samples: Samples):

@@ -1,16 +1,12 @@
 """What a pool of training episodes holds, whoever flies it and however often it is interrupted."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from faultpath_quadrotor.platform import PLATFORM, FlightSettings
 from faultpath_quadrotor.training import collection, flight
 from faultpath_quadrotor.training.collection import collect
 from faultpath_quadrotor.training.flight import fly
-from faultpath_quadrotor.training.pool import episodes_path, read_pool
-from faultpath_quadrotor.training.provenance import provenance_path
-from faultpath_quadrotor.training.recorded import COMPONENTS, SIGNALS
+from faultpath_quadrotor.training.recorded import COMPONENTS, SIGNALS, FlightData
 from faultpath_quadrotor.vehicle import COLLECTIVE_MAX_N, CONTROL_RATE_HZ, RATE_LIMIT_RADPS
 
 from faultpath.core.errors import UserError
@@ -38,12 +34,11 @@ def pools(short, tmp_path_factory):
 
 
 def contents(paths):
-    every = [f(path) for path in paths.values() for f in (Path, episodes_path, provenance_path)]
-    return [path.read_bytes() for path in every]
+    return [path.read_bytes() for path in paths.values()]
 
 
 def test_the_nominal_pool_is_still_and_the_wind_pool_has_the_collection_s_wind(pools):
-    still, windy = read_pool(pools["nominal"]), read_pool(pools["wind"])
+    still, windy = FlightData.read(pools["nominal"]), FlightData.read(pools["wind"])
     assert not signal(still, "wind_mps").any()
     for episode, (first, steps) in enumerate(zip(windy.first_row, windy.steps, strict=True)):
         series = PLATFORM.winds.pool_series(0, episode, 6.1)
@@ -56,7 +51,7 @@ def test_the_result_does_not_depend_on_the_shards(pools, tmp_path, monkeypatch):
     monkeypatch.setattr(collection, "BATCH", 4)
     again = collect(tmp_path, workers=0, episodes=SMALL)
     for name, path in pools.items():
-        one, two = read_pool(path), read_pool(again[name])
+        one, two = FlightData.read(path), FlightData.read(again[name])
         for part in ("values", "steps"):
             assert np.array_equal(getattr(one, part), getattr(two, part), equal_nan=True)
         assert all(np.array_equal(one.vehicles[key], two.vehicles[key]) for key in one.vehicles)
@@ -79,7 +74,7 @@ def test_an_interrupted_collection_goes_on_and_ends_with_the_same_files(pools, t
 
 def test_a_pool_of_another_seed_is_another_pool_and_is_kept(pools, tmp_path):
     path = collect(tmp_path, ("nominal",), 0, SMALL, seed=1)["nominal"]
-    here, there = (read_pool(file).values[:, 0] for file in (path, pools["nominal"]))
+    here, there = (FlightData.read(file).values[:, 0] for file in (path, pools["nominal"]))
     assert not np.array_equal(here, there)
     stamp, seen = path.stat().st_mtime_ns, []
     collect(tmp_path, ("nominal",), 0, SMALL, seed=1, progress=lambda *told: seen.append(told))
@@ -94,18 +89,20 @@ def test_mistakes_are_told(pools, tmp_path):
     with pytest.raises(UserError, match="cannot have 0 episodes"):
         collect(tmp_path, episodes={"wind": 0})
     with pytest.raises(UserError, match="no finished pool"):
-        read_pool(tmp_path / "nominal.parquet")
+        FlightData.read(tmp_path / "nominal.safetensors")
     (tmp_path / "file").write_text("")
     with pytest.raises(UserError, match="choose a folder"):
         collect(tmp_path / "file")
 
 
-@pytest.mark.parametrize("damaged", ["nominal.parquet", "nominal.episodes.parquet", "nominal.json"])
-def test_a_damaged_pool_is_not_read(damaged, tmp_path):
+@pytest.mark.parametrize("place", [0, 20, -1], ids=["length", "note", "last number"])
+def test_a_damaged_pool_is_not_read(place, tmp_path):
     path = collect(tmp_path, ("nominal",), 0, {"nominal": 1})["nominal"]
-    (tmp_path / damaged).write_bytes(b"?" + (tmp_path / damaged).read_bytes()[1:])
+    content = bytearray(path.read_bytes())
+    content[place] ^= 1
+    path.write_bytes(content)
     with pytest.raises(UserError, match="collect it again"):
-        read_pool(path)
+        FlightData.read(path)
 
 
 def signal(flights, name):

@@ -84,9 +84,9 @@ def test_a_second_call_does_nothing_and_more_scenes_keep_what_is_there(whole, li
         assert np.array_equal(again.values(measurement).values, table.values(measurement).values)
     one = asked(library)[:1]
     measure(one, 1, tmp_path)
-    flown = {path.name for path in tmp_path.glob("*.rows")}
+    flown = {path.name for path in tmp_path.glob("*.safetensors")}
     measure(one, 2, tmp_path)
-    assert flown < {path.name for path in tmp_path.glob("*.rows")}
+    assert flown < {path.name for path in tmp_path.glob("*.safetensors")}
     few = measure(one, 1, tmp_path).values(one[0])
     both = table.values(one[0])
     assert np.array_equal(few.values, both.values[: len(few)])

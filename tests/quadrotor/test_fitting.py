@@ -6,11 +6,7 @@ from pathlib import Path
 import pytest
 import torch
 from faultpath_quadrotor import checkpoint
-from faultpath_quadrotor.checkpoint import (
-    ModelCard,
-    checkpoint_path,
-    load_checkpoint,
-)
+from faultpath_quadrotor.checkpoint import ModelCard, checkpoint_path
 from faultpath_quadrotor.training import jobs
 from faultpath_quadrotor.training.fitting import fit, journal_path
 from fitting_toys import Net, Toy
@@ -19,7 +15,7 @@ from safetensors.torch import load_file
 from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import write
 from faultpath.learning.loop import Diverged
-from faultpath.learning.model_card import Schedule
+from faultpath.learning.model_card import Schedule, fill
 from faultpath.learning.model_card import read_card as read
 
 
@@ -149,7 +145,7 @@ def test_a_shipped_model_is_found_and_is_the_fitted_one(tmp_path, monkeypatch):
     monkeypatch.setattr(checkpoint, "shipped_folder", lambda: tmp_path / "package")
     jobs.ship(fitted)
     task, module = Toy(), Net(seed=7)
-    card = load_checkpoint(module, checkpoint_path("toy", 0))
+    card = fill(module, checkpoint_path("toy", 0), ModelCard)
     assert card == read_card(fitted)
     task.load()
     module.eval()

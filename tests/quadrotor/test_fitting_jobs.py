@@ -5,15 +5,16 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from faultpath_quadrotor.training import catalogue, jobs, trajectories
+from faultpath_quadrotor.training import catalogue, trajectories
 from faultpath_quadrotor.training.catalogue import ALL, GROUPS, FitJob, choose, stages
 from faultpath_quadrotor.training.collection import EPISODES, recipe
 from faultpath_quadrotor.training.fitting import fit, journal_path
 from faultpath_quadrotor.training.jobs import Overview, missing_pools, run_jobs
-from faultpath_quadrotor.training.provenance import PoolProvenance
+from faultpath_quadrotor.training.pool import Provenance
 from fitting_toys import Toy, entry
 
 from faultpath.core.errors import Stopped, UserError
+from faultpath.learning.tensor_files import encoded
 from faultpath.run.work import processes as processes_of_work
 
 
@@ -37,31 +38,33 @@ def test_without_names_everything_comes_in_order_of_dependence() -> None:
 
 
 def test_the_catalogue_asks_for_pools_that_can_be_collected() -> None:
-    known = {*EPISODES, catalogue.CLEARANCE_POOL, trajectories.POOL}
+    known = {*EPISODES, catalogue.CLEARANCE_POOL, catalogue.TRAJECTORY_POOL}
     assert {pool for each in ALL for pool in each.pools} == known
 
 
-def test_pools_are_missing_until_their_last_file_is_there(tmp_path: Path) -> None:
-    chosen = choose(["wm-a", "wm-a-wind", "clearance"])
-    assert missing_pools(chosen, tmp_path) == ("nominal", "wind", "clearance")
-    (tmp_path / "nominal.parquet").touch()
-    (tmp_path / "wind.json").touch()
-    assert missing_pools(chosen, tmp_path) == ("nominal", "clearance")
+POOLS = {"wm-a": ("nominal", recipe), "gru-trajectory": ("trajectory", trajectories.recipe)}
 
 
-@pytest.mark.parametrize("pool", ["nominal", "trajectory"])
-def test_a_pool_of_other_code_is_not_fitted_on(pool: str, tmp_path: Path) -> None:
-    model = {"nominal": "wm-a", "trajectory": "gru-trajectory"}[pool]
-    wanted = [job for job in choose([model]) if job.seed == 0]
-    asked = recipe(pool) if pool == "nominal" else trajectories.recipe()
-    rest = {"packages": {}, "rows_sha256": "", "episodes_sha256": ""}
-    found = PoolProvenance(**dict(asked), faultpath_version="0", **rest)
-    path = tmp_path / f"{pool}.json"
-    path.write_bytes(found.encode())
-    jobs.check_pools(wanted, tmp_path)
-    path.write_bytes(found.model_copy(update={"code_sha256": "other"}).encode())
-    with pytest.raises(UserError, match=rf"{pool}\.parquet was collected by other code"):
-        jobs.check_pools(wanted, tmp_path)
+@pytest.mark.parametrize("model", POOLS)
+def test_a_pool_is_missing_until_it_is_there_and_one_of_other_code_is_refused(
+    model: str, tmp_path: Path
+) -> None:
+    pool, recipe_of = POOLS[model]
+    chosen = [job for job in choose([model, "clearance"]) if job.seed == 0]
+    assert missing_pools(chosen, tmp_path) == (pool, "clearance")
+    expected = recipe_of(pool) if pool == "nominal" else recipe_of()
+
+    def put(code: str) -> None:
+        made = {"code_sha256": code, "packages": {}, "faultpath_version": "0"}
+        provenance = Provenance(**dict(expected) | made, content_sha256="")
+        note = provenance.model_dump(mode="json")
+        (tmp_path / f"{pool}.safetensors").write_bytes(encoded({}, note))
+
+    put(expected.code_sha256)
+    assert missing_pools(chosen, tmp_path) == ("clearance",)
+    put("other")
+    with pytest.raises(UserError, match=rf"{pool}\.safetensors was collected by other code"):
+        missing_pools(chosen, tmp_path)
 
 
 @pytest.mark.slow

@@ -3,7 +3,7 @@
 import pytest
 import torch
 from faultpath_quadrotor import native
-from faultpath_quadrotor.native.kernel_args import lend
+from faultpath_quadrotor.native.kernel_args import as_kernel_argument
 from faultpath_quadrotor.predictors import PredictorInputs
 from faultpath_quadrotor.predictors.rollout import rolling
 from test_native_rollout import commands_of, inputs_of, predictor
@@ -25,7 +25,7 @@ WRONG: dict[str, tuple[Tensor, str]] = {
 @pytest.mark.parametrize(("tensor", "says"), WRONG.values(), ids=WRONG)
 def test_memory_that_a_kernel_would_misread_is_refused(tensor: Tensor, says: str) -> None:
     with pytest.raises(ValueError, match=rf"kernel: 'commands' .*{says}.*FAULTPATH_KERNELS"):
-        lend("commands", tensor, 3, 4)
+        as_kernel_argument("commands", tensor, 3, 4)
 
 
 def test_a_tensor_that_nobody_checked_never_reaches_a_kernel() -> None:

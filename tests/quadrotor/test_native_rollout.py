@@ -10,10 +10,10 @@ from faultpath_quadrotor.predictors import (
     KinematicIntegrator,
     Predictor,
     PredictorInputs,
+    UnanchoredNetwork,
     UnanchoredPredictor,
 )
 from faultpath_quadrotor.predictors.network import GatedCell, draw_weights
-from faultpath_quadrotor.predictors.recurrent import recur
 from faultpath_quadrotor.predictors.rollout import Roll, Rollout, rolling, rollout
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import NOMINAL_DRAG_KGPS
@@ -37,7 +37,7 @@ def predictor(name: str) -> Predictor:
         drag, wind = name == "dki-drag", name != "dki-still"
         return KinematicIntegrator(drag, wind, drag_kgps=NOMINAL_DRAG_KGPS)
     if name == "wm-u":
-        unanchored = UnanchoredPredictor.build_network()
+        unanchored = UnanchoredNetwork()
         random_weights(unanchored)
         return UnanchoredPredictor(unanchored)
     anchored = AnchoredPredictor.build_network()
@@ -110,7 +110,8 @@ def test_the_last_latent_is_the_portable_one_and_that_of_the_gru_of_torch(isa: s
         portable = cell.last(sequence).detach()
     assert portable.std() > 0.1
     given, kept = ((layer.weight, layer.bias) for layer in (cell.from_input, cell.from_latent))
-    compiled = recur(native.load(isa), given, kept, sequence)
+    with native.using(isa), torch.inference_mode():
+        compiled = cell.last(sequence)
     torch.testing.assert_close(compiled, portable, rtol=1e-5, atol=1e-5)
     reference = torch.nn.GRU(inputs, 32)
     weights = (given[0], kept[0], given[1][:, 0], kept[1][:, 0])

@@ -39,14 +39,17 @@ def test_weights_belong_to_what_decided_their_data():
 
 
 def test_weights_of_another_platform_are_refused(monkeypatch):
-    models._loaded.cache_clear()
+    models.predictor.cache_clear()
     monkeypatch.setattr(models, "PLATFORM", Platform(drag_kgps=(0.3, 0.3, 0.3)))
     with pytest.raises(UserError, match=r"wm-a-0 .* another platform .* fit them again"):
         models.predictor("wm-a", 0)
 
 
 def test_what_is_on_offer_is_what_there_is():
-    assert tuple(models.PREDICTORS) == choices.PREDICTORS
+    for name in choices.PREDICTORS:
+        assert "trim" in models.predictor(name, None).reads
+    for name in choices.RECONSTRUCTIONS:
+        assert models.reconstruction(name, None).reads
     assert QuadrotorChoices().candidates == SamplerSettings().candidates
     assert f"`{PLATFORM.hash}`" in (ROOT / "docs" / "design" / "platform.md").read_text("utf-8")
 

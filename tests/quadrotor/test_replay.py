@@ -4,7 +4,7 @@ import pytest
 import torch
 from faultpath_paper.evidence.inputs import Subject
 from faultpath_paper.evidence.playback import at_present
-from faultpath_quadrotor.models import PREDICTORS, RECONSTRUCTIONS
+from faultpath_quadrotor.models import predictor, reconstruction
 from faultpath_quadrotor.predictors import KinematicIntegrator, PredictorInputs
 from faultpath_quadrotor.predictors import module as prediction
 from faultpath_quadrotor.state import State
@@ -63,7 +63,7 @@ def test_a_window_tells_the_predictor_what_the_flight_did(variant, told):
 
 @pytest.mark.parametrize("name", ["wm-a", "wm-u+dcc", "wm-a-wind", "true-parameter", "dki-drag"])
 def test_a_fit_rolls_out_what_the_modules_do(name, windows, told):
-    model = PREDICTORS[name].load(name, 0)
+    model = predictor(name, 0)
     with torch.inference_mode():
         present = at_present(windows, model, None, {"wind": "true_wind"})
         played, inputs = present.positions(), told[-1]
@@ -76,7 +76,7 @@ def test_a_fit_rolls_out_what_the_modules_do(name, windows, told):
 
 @pytest.mark.parametrize("name", ["gru", "gru-withheld"])
 def test_a_fit_gives_a_reconstruction_the_history_that_it_remembers(name, windows):
-    model = RECONSTRUCTIONS[name].load(name, 0)
+    model = reconstruction(name, 0)
     nobodys = KinematicIntegrator(wind=True, drag_kgps=(0.0, 0.0, 0.0))  # it only reads the wind
     with torch.inference_mode():
         played = at_present(windows, nobodys, model, {"wind": "reconstructed_wind"}).wind()
@@ -96,7 +96,7 @@ def test_a_vehicle_that_goes_on_as_before_its_flight_keeps_its_estimate():
     }
     reading = {(channel, "history"): value for channel, value in values.items()}
     reading |= {(channel, "head"): torch.ones(32).double() for channel in ("mass", "thrust_scale")}
-    module = RECONSTRUCTIONS["gru"].load("gru", 0)
+    module = reconstruction("gru", 0)
     memory = module.begin(reading)
     first = module.wind(memory)
     for _ in range(4):

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from faultpath_quadrotor.training.provenance import code_of
+from faultpath_quadrotor.training.pool import code_of
 
 
 def test_an_edit_of_any_source_counts_and_compiled_kernels_do_not(

@@ -17,12 +17,14 @@ import pytest
 from outcomes import outcome
 
 from faultpath.analyses.decide import decide
+from faultpath.analyses.facts import ComparisonFacts
 from faultpath.analyses.model import Condition, FaultedTap
-from faultpath.analyses.question import Question
+from faultpath.faults import FaultText
 from faultpath.interface import Interface, read_interface
 from faultpath.report.inputs import ReportInput
 from faultpath.run import SystemShown, Trial, Trials, VariantShown
 from faultpath.run.provenance import RunProvenance
+from faultpath.run.question import AuditQuestion
 from faultpath.system import Outcome, Status
 from faultpath.system.declared import FloorPlan, Pillar, Prism
 
@@ -85,19 +87,21 @@ def make_input(
         _lose(row) if row.condition == lost else row
         for row in _rows(seeds, n_scenes, void, chances)
     )
-    question = Question(
-        system="quadrotor",
+    question = AuditQuestion(
         options={"wind": "L3", "predictor": "wm-a"},
         baseline=BASELINE,
         repair=REPAIR,
-        fault="calibration=+0.1",
+        fault=FaultText.read("calibration=+0.1"),
+    )
+    facts = ComparisonFacts(
+        system="quadrotor",
         library=library,
         library_hash=HASH,
         n_scenes=n_scenes,
         seeds=seeds,
     )
     outcomes = Trials.of(rows)
-    record = decide(question, conditions, outcomes)
+    record = decide(question, facts, conditions, outcomes)
     return ReportInput(
         record=record,
         provenance=_provenance(),
@@ -269,13 +273,14 @@ def _plan(index: int) -> FloorPlan:
 
 def _provenance() -> RunProvenance:
     stored = ROOT / "docs" / "reference" / "toy" / "provenance.json"
+    run = RunProvenance.model_validate_json(stored.read_bytes())
+    code = run.code.model_copy(update={"dirty": True, "system_fingerprint": "b7e1" * 16})
+    packages = {"numpy": "2.4.6", "torch": "2.13.0"}
     changes = {
         "command": ("faultpath", "audit", "quadrotor", "--library", NASTY),
-        "python": "3.11.2",
-        "packages": {"numpy": "2.4.6", "torch": "2.13.0"},
+        "code": code,
+        "machine": run.machine.model_copy(update={"python": "3.11.2", "packages": packages}),
         "blocks_kept": 8,
-        "dirty": True,
         "library_hash": HASH,
-        "system_fingerprint": "b7e1" * 16,
     }
-    return RunProvenance.model_validate_json(stored.read_bytes()).model_copy(update=changes)
+    return run.model_copy(update=changes)

@@ -54,11 +54,25 @@ def announcing(source: ReportInput, **signs: int) -> DecisionRecord:
     return record.model_copy(update={"effects": effects, "changes": changes})
 
 
-def begun(source: ReportInput, record: DecisionRecord, pairs: list[Pair]) -> list[int]:
-    """Return the scenes that the viewer begins with, by their index."""
+def begun(
+    source: ReportInput, record: DecisionRecord, pairs: list[Pair], recorded: tuple[int, ...] = ()
+) -> list[int]:
+    """Return the scenes that the viewer begins with, by their index; `recorded` are those of which
+    signals were."""
+    places = {(pair.scene, pair.seed): pair.index for pair in pairs}
+    kept = [at for at, place in places.items() if place in recorded]
+    return [places[at] for at in choose(record, pairs, kept)]
+
+
+def timed(pairs: list[Pair], *times: float) -> list[Pair]:
+    """Return the pairs with the time at which each scene's first trial ends; the other goes on."""
     return [
-        next(pair.index for pair in pairs if (pair.scene, pair.seed) == at)
-        for at in choose(record, pairs)
+        replace(
+            pair,
+            baseline=pair.baseline and replace(pair.baseline, time_s=times[pair.index]),
+            repair=pair.repair and replace(pair.repair, time_s=times[pair.index] + 5.0),
+        )
+        for pair in pairs
     ]
 
 
@@ -82,6 +96,22 @@ def test_what_is_significant_is_shown_by_a_scene_that_goes_so(
     assert begun(one_seed, record, pairs)[0] == first
 
 
+def test_of_scenes_that_go_alike_the_median_one_is_shown_and_stays_shown(
+    one_seed: ReportInput,
+) -> None:
+    record = announcing(one_seed, reconstruction=1)
+    pairs = timed(scenes(one_seed, "bbrb", "bbrb", "bbrb", "bbrb", "bbrb"), 9.0, 1.0, 4.0, 3.0, 8.0)
+    assert begun(one_seed, record, pairs)[0] == 2
+    said = {pair.index: captions(pairs)[pair.scene, 0] for pair in pairs}
+    assert [place for place in said if "It is a typical one" in said[place]] == [2]
+    assert begun(one_seed, record, pairs, recorded=(1,))[0] == 1
+    other = scenes(one_seed, "bbrb", "bbbb", "bbrb")
+    assert begun(one_seed, record, other, recorded=(1,))[-1] == 1, "it goes otherwise"
+    alike = timed(pairs, *[float("nan")] * 5)
+    assert begun(one_seed, record, alike)[0] == 0
+    assert not any("typical" in words for words in captions(alike).values())
+
+
 @pytest.mark.parametrize(
     ("signs", "condition"),
     [({"reconstruction": 1}, "reconstruction"), ({"reconstruction": 1, "shared": -1}, "shared")],
@@ -102,7 +132,7 @@ def test_what_is_decided_at_the_floor_announces_nothing(one_seed: ReportInput, s
     floor = tuple(e.model_copy(update={"rates": (5.0, 6.0)}) for e in record.effects)
     quiet = tuple(c.model_copy(update={"turn": "none"}) for c in record.changes)
     record = record.model_copy(update={"effects": floor, "changes": quiet})
-    pairs = scenes(one_seed, "rrrr", "bbrb", "nnnn", "bbbb", "nnnn", "bbbb")
+    pairs = timed(scenes(one_seed, "rrrr", "bbrb", "nnnn", "bbbb", "nnnn", "bbbb"), *[9.0] * 6)
     assert begun(one_seed, record, pairs) == [0, 1, 2, 3, 4, 5]
     counts = sorted(said.partition(":")[0] for said in captions(pairs).values())
     assert counts == [

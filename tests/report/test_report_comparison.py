@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 from rich.console import Console
 
+from faultpath.analyses.facts import ComparisonFacts
 from faultpath.analyses.model import Condition
 from faultpath.analyses.tables.markdown import grid
 from faultpath.report.compared import Compared, differing, titles, together
@@ -24,8 +25,11 @@ Given = tuple[Compared, ...]
 
 
 def run(source: ReportInput, number: int, folder: str = "", **asked: object) -> Compared:
-    question = source.record.question.model_copy(update=asked)
-    record = source.record.model_copy(update={"question": question})
+    record = source.record
+    told = {name: asked.pop(name) for name in {*asked} & {*ComparisonFacts.model_fields}}
+    question = record.question.model_copy(update=asked)
+    facts = record.facts.model_copy(update=told)
+    record = record.model_copy(update={"question": question, "facts": facts})
     return Compared(number, folder or f"runs/{number}", replace(source, record=record))
 
 
@@ -57,8 +61,11 @@ def unlike(one_seed: ReportInput) -> Given:
     """Return two runs between which everything differs that may."""
     options = {"predictor": "wm-a", "plant": "mujoco"}
     second = run(one_seed, 2, fault="calibration=-0.1", options=options, seeds=(0, 1))
-    other = {"packages": {**second.provenance.packages, "torch": "2.14.0"}, "python": "3.12.1"}
-    provenance = second.provenance.model_copy(update=other | {"system_fingerprint": "1" * 64})
+    origin = second.provenance
+    packages = {**origin.machine.packages, "torch": "2.14.0"}
+    machine = origin.machine.model_copy(update={"packages": packages, "python": "3.12.1"})
+    code = origin.code.model_copy(update={"system_fingerprint": "1" * 64})
+    provenance = origin.model_copy(update={"code": code, "machine": machine})
     source = replace(second.source, provenance=provenance)
     return run(one_seed, 1), replace(second, source=source)
 

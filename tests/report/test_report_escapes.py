@@ -77,16 +77,18 @@ def test_markdown_shows_any_text_as_it_is(name: str) -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_markdown_tables_hold_no_markup_of_a_user(name: str, one_seed: ReportInput) -> None:
     record = one_seed.record
-    named = {"library": name, "fault": name, "system": name}
+    named = {"library": name, "system": name}
     conditions = tuple(
         condition.model_copy(update={"title": name}) for condition in record.conditions
     )
-    question = record.question.model_copy(update=named)
+    question = record.question.model_copy(update={"fault": name})
+    facts = record.facts.model_copy(update=named)
+    told = {"question": question, "facts": facts, "conditions": conditions}
     lines = (Line(label=name, entries=(Entry(text=name, published=name),)), Line(label=name))
     table = Table(name="table-9", title=name, columns=(name,), lines=lines, notes=(name,))
     claimed = ledger().model_copy(update={"library": name})
     for text in (
-        markdown_table(record.model_copy(update={"question": question, "conditions": conditions})),
+        markdown_table(record.model_copy(update=told)),
         table_markdown(table),
         ledger_markdown(claimed, "paper"),
     ):

@@ -7,7 +7,14 @@ from xml.etree import ElementTree
 from faultpath.analyses.model import Ahead, ConditionBreakEven
 from faultpath.analyses.pairs import read_pairs
 from faultpath.analyses.record import DecisionRecord
-from faultpath.report.effects import effect_axis, effect_rows, frequency_panels, panel, shared_axis
+from faultpath.report.effects import (
+    effect_axis,
+    effect_rows,
+    frequency_panels,
+    no_break_even,
+    panel,
+    shared_axis,
+)
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pair_grid import pair_grid, pair_key
 from faultpath.report.svg import covering, shortened, text_width
@@ -57,31 +64,51 @@ def _panel(
     signs: tuple[Literal[-1, 1], ...],
     pieces: tuple[tuple[float, float], ...],
     *regions: Region,
-) -> str:
+    p_star: float | None = 0.5,
+) -> tuple[list[str], list[str]]:
+    """Return the pictures of a break-even, and the sentences in place of one."""
     kind = "whole" if pieces == ((0.0, 1.0),) else "interval" if pieces else "empty"
     result = BreakEven(
-        p_star=None, pieces=pieces, kind=kind, regions=regions, method="", estimand=""
+        p_star=p_star, pieces=pieces, kind=kind, regions=regions, method="", estimand=""
     )
     curve = ((0.0, -10.0, -20.0, 0.0), (1.0, 10.0, 0.0, 20.0))
     ahead = tuple(Ahead(sign=sign, where="many") for sign in signs)
-    condition = ConditionBreakEven(condition="shared", result=result, curve=curve, ahead=ahead)
-    return frequency_panels(record.model_copy(update={"break_even": (condition,)}))[0][0]
+    condition = ConditionBreakEven(
+        condition="shared", over="frequency", result=result, curve=curve, ahead=ahead
+    )
+    shown = record.model_copy(update={"break_evens": (condition,)})
+    return [picture for picture, _ in frequency_panels(shown)], no_break_even(shown)
 
 
 def test_the_curve_is_coloured_where_a_variant_is_decided(one_seed: ReportInput) -> None:
     record = one_seed.record
     regions = (Region(low=0.0, high=0.3, sign=-1), Region(low=0.7, high=1.0, sign=1))
-    drawn = _panel(record, (1,), ((0.3, 0.7),), *regions)
+    ((drawn,), _) = _panel(record, (1,), ((0.3, 0.7),), *regions)
     assert drawn.count('class="curve baseline"') == drawn.count('class="curve repair"') == 1
     assert drawn.count('class="star-range"') == 1
     assert "share of episodes with the fault, %" in drawn
     assert "expected difference in success, pp" in drawn
-    silent = _panel(record, (), ((0.3, 0.7),), *regions)
+    ((silent,), _) = _panel(record, (), ((0.3, 0.7),), *regions)
     assert "curve baseline" not in silent
     assert "curve repair" not in silent
     assert "No frequency is significant." in silent
-    both = _panel(record, (1,), ((0.0, 0.2), (0.6, 1.0)), Region(low=0.2, high=0.6, sign=1))
+    ((both,), _) = _panel(record, (1,), ((0.0, 0.2), (0.6, 1.0)), Region(low=0.2, high=0.6, sign=1))
     assert both.count('class="star-range"') == 2
+
+
+def test_a_break_even_is_drawn_only_where_there_is_one(one_seed: ReportInput) -> None:
+    record, ahead = one_seed.record, Region(low=0.7, high=1.0, sign=1)
+    for p_star, regions, drawn in (
+        (0.5, [ahead], 1),
+        (None, [ahead], 0),
+        (0.0, [ahead], 0),
+        (0.5, [], 0),
+    ):
+        pictures, said = _panel(record, (1,), ((0.0, 0.7),), *regions, p_star=p_star)
+        assert (len(pictures), len(said)) == (drawn, 1 - drawn)
+    assert said == [
+        "Shared fault: gru-dcc is ahead where the fault is frequent; how rare it may be is open."
+    ]
 
 
 def test_long_labels_are_cut() -> None:

@@ -11,8 +11,11 @@ from page_reader import Page, unpack
 import faultpath.analyses.pairs as page_pairs
 from faultpath.analyses.examples import captions
 from faultpath.analyses.pairs import PairKind, read_pairs
+from faultpath.analyses.sentences import phrases
+from faultpath.analyses.sentences.wording import capital
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
+from faultpath.stats.estimate import DEGREES, EM
 
 
 @pytest.fixture(scope="module", params=["one_seed", "three_seeds"])
@@ -57,7 +60,7 @@ def test_every_figure_is_named(page: Page) -> None:
 def test_pairs_of_the_grid_are_those_of_the_record(source: ReportInput) -> None:
     pairs = read_pairs(source.trials, source.record)
     for effect in source.record.effects:
-        for seed, (won, lost) in zip(source.record.question.seeds, effect.won, strict=True):
+        for seed, (won, lost) in zip(source.record.facts.seeds, effect.won, strict=True):
             kinds = [p.kind for p in pairs if (p.condition, p.seed) == (effect.condition, seed)]
             assert kinds.count(PairKind.REPAIR_ONLY) == won
             assert kinds.count(PairKind.BASELINE_ONLY) == lost
@@ -91,7 +94,7 @@ def test_many_scenes_are_counted_and_some_are_listed(
     assert "Every scene" in page.text
     assert "Every scene" not in many.text
     assert not [tag for tag, a in many.tags if tag == "a" and a.get("class") == "pair"]
-    seeds = len(source.record.question.seeds)
+    seeds = len(source.record.facts.seeds)
     kinds = ("both", "repair only", "baseline only", "neither")
     counts = re.findall(", ".join(rf"{kind} (\d+)" for kind in kinds), many.text)
     assert len(counts) == len(source.record.effects)
@@ -99,3 +102,35 @@ def test_many_scenes_are_counted_and_some_are_listed(
         assert sum(map(int, of)) == scenes * seeds - effect.void
     shown = captions(read_pairs(source.trials, source.record), sampled=True)
     assert all("sampled scenes" in caption for caption in shown.values())
+
+
+@pytest.mark.parametrize(("void", "scenes"), [(False, True), (True, False)])
+def test_what_is_the_same_under_every_condition_is_no_column(
+    make: Callable[..., ReportInput], void: bool, scenes: bool
+) -> None:
+    page = Page(report_page(make(void=void, n_scenes=80)))
+    heads = next(row for row in page.rows if "95 % interval" in row)
+    assert ("Scenes" in heads, "Void pairs" in heads) == (not scenes, not scenes)
+    said = "Scenes, under every condition: 80 (scenes in which both versions have a trial)."
+    assert (said in page.text) == scenes
+
+
+def test_the_tests_stand_with_the_numbers_and_say_what_they_compute(page: Page, html: str) -> None:
+    fold = html[html.index('<details class="more">') :]
+    fold = fold[: fold.index("</details>")]
+    assert "p, before correction: Correct inputs " in fold
+    assert "Holm’s procedure over " in fold
+    assert page.text.count("p, before correction: ") == page.text.count("Holm’s procedure") == 1
+
+
+def test_every_test_has_a_sentence(source: ReportInput) -> None:
+    names = [
+        *(EM, DEGREES, "exact McNemar", "sign test on scene means", "bets on the mean"),
+        *(f"{EM}, normal E", "sign test on scene differences", "t test of the seeds' effects"),
+    ]
+    effect = source.record.effects[0]
+    for name in names:
+        record = source.record.model_copy(
+            update={"effects": (effect.model_copy(update={"test": name}),)}
+        )
+        assert f"{capital(name)}: " in phrases.tests(record)

@@ -37,14 +37,14 @@ def test_every_claim_opens_to_its_parts_and_evidence(html: str, page: Page) -> N
         assert row.count('class="chip ') == 1 + len(claim.parts)
     for said in (
         "p < 0.001 (sign test on scene means)",
-        "least detectable 12.5 pp",
-        "only one succeeds in 51:0/51:1/49:1",
+        "smallest detectable difference 12.5 pp",
+        "only one succeeds, first:second by seed, 51:0/51:1/49:1",
         "the run holds no wm-u",
         "Coupled e=−0.1 lowers success by ≥ 20 pp",
     ):
         assert said in page.text
     assert re.search(r"\+57\.3 pp \[48\.3, 66\.3\]", page.text)
-    assert "least detectable 0.20" not in page.text  # a ratio's nothing is 1, not 0
+    assert "smallest detectable difference 0.20" not in page.text  # a ratio's nothing is 1, not 0
 
 
 def test_tables_set_each_figure_beside_the_papers(html: str, page: Page) -> None:

@@ -20,29 +20,35 @@ SAME, OTHER = "right sign, other size", "other sign"
 
 
 @pytest.mark.parametrize(
-    ("sizes", "said"),
+    ("sizes", "text"),
     [
         ((), ""),
         (("",), ""),
-        (("", "not comparable"), "not comparable"),
-        (("compatible", ""), "compatible"),
-        (("compatible", "compatible"), "compatible, 2 of 2"),
-        ((SAME, "compatible", SAME, "not comparable"), f"{SAME}, 2 of 3"),
-        ((SAME, "other size", "compatible"), "other size, 1 of 3"),
-        ((OTHER, "other size", SAME, "compatible"), f"{OTHER}, 1 of 4"),
+        (("", "not comparable"), "cannot be compared"),
+        (("compatible", ""), "1 figure agrees"),
+        (("compatible", "compatible"), "2 figures agree"),
+        (
+            (SAME, "compatible", SAME, "not comparable"),
+            "1 figure agrees, 2 have the same direction but a different size",
+        ),
+        (
+            (OTHER, "other size", "compatible"),
+            "1 figure agrees, 1 has a different size, 1 points in the opposite direction",
+        ),
     ],
 )
-def test_the_size_of_a_claim_is_that_of_its_farthest_part(
-    sizes: tuple[str, ...], said: str
+def test_the_figures_of_a_claim_are_counted_in_plain_words(
+    sizes: tuple[str, ...], text: str
 ) -> None:
     found = sized(*sizes) if sizes else sized("").model_copy(update={"parts": ()})
-    assert words.size(found) == said
+    assert words.size(found) == text
 
 
 def test_sizes_are_counted_in_a_sentence() -> None:
     sizes = [(SAME, "compatible"), (OTHER, "compatible", "not comparable")]
     found = ledger().model_copy(update={"claims": tuple(sized(*each) for each in sizes)})
     assert words.sizes(found) == (
-        "The paper prints 5 figures for these claims, of which 4 can be compared: "
-        f"2 compatible; 1 {SAME}; 1 {OTHER}."
+        "The paper prints 5 figures for these claims, of which 4 can be compared with ours: "
+        "2 figures agree, 1 has the same direction but a different size, 1 points in the opposite "
+        "direction."
     )

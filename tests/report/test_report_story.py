@@ -46,8 +46,8 @@ def test_each_condition_shows_who_gets_the_fault(one_seed: ReportInput) -> None:
 @pytest.mark.parametrize("readers", [("*",), ("predictor.trim",)])
 def test_the_fault_is_in_words_whoever_gets_it(one_seed: ReportInput, readers) -> None:
     fault = Fault(channel="mass", readers=readers, intervention=Scale(factor=0.6))
-    question = one_seed.record.question.model_copy(update={"faults": (fault,)})
-    record = one_seed.record.model_copy(update={"question": question})
+    facts = one_seed.record.facts.model_copy(update={"faults": (fault,)})
+    record = one_seed.record.model_copy(update={"facts": facts})
     assert "mass scaled by 0.6</" in report_page(replace(one_seed, record=record))
 
 

@@ -124,3 +124,26 @@ def test_signals_are_plotted_beside_what_they_are_compared_with(one_seed: Report
     assert trial["faulted"] == [[1, 3], [4, 5]]
     (_, _, place, low, level) = next(line for line in trial["lines"] if line[:2] == [1, 1])
     assert np.allclose(low + level * series[place], 1 + steps[:, 0] / 2, atol=1e-3)
+
+
+def test_the_player_says_where_recorded_trials_part(one_seed: ReportInput) -> None:
+    steps = np.arange(5, dtype=np.float32)[:, None]
+
+    def heard(after: int) -> tuple[Signal, ...]:
+        return (Signal("reconstructed_wind", "wind", "m/s", np.where(steps < after, 0, steps)),)
+
+    scene = next(iter(one_seed.system.plans))
+    at = [TrialAddress(name, "shared", 0, scene) for name in ("gru", "gru-dcc")]
+    alone = TrialAddress("gru", "predictor", 0, scene)
+    signals = {at[0]: heard(9), at[1]: heard(1), alone: heard(9)}
+    data, _ = _unpacked(replace(one_seed, signals=signals))
+    told = {
+        (of["scene"], pair["condition"]): pair["parting"]
+        for of in data["scenes"]
+        for pair in of["pairs"]
+        if pair["parting"]
+    }
+    assert set(told) == {(scene, "shared")}
+    parting = told[scene, "shared"]
+    assert "the wind that the predictor of gru-dcc reads is 1 m/s instead of 0" in parting["said"]
+    assert [1, "readings differ"] in parting["marks"]

@@ -6,7 +6,7 @@ import sys
 import time
 from pathlib import Path
 
-from faultpath.run.work.executor import tell
+from faultpath.run.work.executor import send_message
 
 _seen: list[int] = []
 
@@ -49,7 +49,7 @@ def remember(number: int) -> list[int]:
 
 def count(upto: int) -> int:
     for number in range(upto):
-        tell(number)
+        send_message(number)
     return upto
 
 

@@ -1,68 +1,158 @@
-"""What is lost when something goes wrong: as little as can be."""
+"""What is lost to a system that hangs, exits, fails, dies or returns nonsense: little."""
 
 import json
+import math
 import os
-import signal
-import subprocess
 import sys
+import time
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
-from calls import alive, until
 from toy_study import SCENES, SYSTEM, UNITS, study, study_of
-from toy_system import STEPS
+from toy_system import STEPS, ToySystem
 
+from faultpath.core.errors import UserError
+from faultpath.loop import Reading
+from faultpath.run.attempt import WrongOutcomes
+from faultpath.run.execution import dispatch
 from faultpath.run.execution.runner import run_study
-from faultpath.run.plan import Study
+from faultpath.run.execution.state import FEW
+from faultpath.system import Status
 
-_RUN = """
-import sys
-from pathlib import Path
-from faultpath.core.errors import Stopped
-from faultpath.run.execution.runner import run_study
-from faultpath.run.plan import Study
-
-study = Study.model_validate_json(Path(sys.argv[1]).read_text())
-try:
-    result = run_study(study, sys.argv[2], workers=2, notice=print, recheck=False)
-except Stopped as error:
-    print(error)
-    sys.exit(130)
-print(f"computed {result.blocks_computed} kept {result.blocks_kept}")
-"""
+WRONG = {
+    "distance": {"metrics": {"distance": math.nan}},
+    "status": {"status": "success"},
+    "object": {"trace": lambda: None},  # would not even cross to the parent
+    "surrogate": {"initial_hash": "\ud800"},
+    "error": {"status": Status.FAILED, "error": "lost \ud800"},
+    "nothing": lambda outcomes: None,
+    "dict": lambda outcomes: [vars(outcome) for outcome in outcomes],
+    "order": lambda outcomes: outcomes[::-1],
+}
 
 
-def _slow(tmp_path: Path) -> tuple[Study, Path, Path]:
-    """Return a study that is slow while a file exists, that file, and the log of its calls.
+class Unruly(ToySystem):
+    """Does one unruly thing, in the scene `where` or in all."""
 
-    It hangs while the file `hang` exists.
-    """
-    log, gate = tmp_path / "log", tmp_path / "slow"
-    gate.touch()
-    options = {"log": log, "slow_while": gate, "hang_while": tmp_path / "hang"}
-    return study(**{name: str(path) for name, path in options.items()}), gate, log
-
-
-def _start(study: Study, folder: Path, out: Path) -> subprocess.Popen[str]:
-    """Run a study in a process of its own, in a session of its own, printing into a file."""
-    definition = out.with_suffix(".json")
-    definition.write_text(study.model_dump_json())
-    with out.open("w") as stdout:
-        return subprocess.Popen(
-            [sys.executable, "-u", "-c", _RUN, str(definition), str(folder)],
-            stdout=stdout,
-            stderr=subprocess.DEVNULL,
-            text=True,
-            start_new_session=True,
-        )
-
-
-def _shards(folder: Path) -> int:
-    return len(list(folder.glob("shards/*.parquet")))
+    def run(self, variant, scenes, taps, seed):
+        does, where = self._options["does"], self._options.get("where")
+        mass = np.ones(len(scenes))
+        match does if where in (None, *scenes) else "":
+            case "hang":
+                time.sleep(600)
+            case "exit":
+                sys.exit(int(self._options["status"]))
+            case "raise":
+                raise ValueError("no air\nanywhere")
+            case "lose its mass":
+                mass[scenes.index(where)] = math.nan
+                taps.deliver("mass", "planner.thrust", Reading(mass, "mass", 0), 0)
+            case "write":
+                got = taps.deliver("mass", "planner.thrust", Reading(mass, "mass", 0), 0)
+                got *= 2.0
+        outcomes = super().run(variant, scenes, taps, seed)
+        changes = WRONG.get(does, {})
+        if callable(changes):
+            return changes(outcomes)
+        return [replace(o, **changes) if o.scene == where else o for o in outcomes]
 
 
-def _calls(log: Path) -> list[list[str]]:
-    return [line.split() for line in log.read_text().splitlines()]
+def unruly(**options: str) -> Unruly:
+    return Unruly(**options)
+
+
+def bounded(**options: str) -> Unruly:
+    """Build one that says itself how long."""
+    system = Unruly(**options)
+    system.time_limit_s = 3.0
+    return system
+
+
+def slow_worker(parent: str) -> ToySystem:
+    """Build the system in the process `parent`, and wait for ever in any other."""
+    if os.getpid() != int(parent):
+        time.sleep(600)
+    return ToySystem()
+
+
+UNRULY = f"{__file__}:unruly"
+
+
+@pytest.mark.parametrize(
+    ("factory", "scenes", "limits"),
+    [("unruly", SCENES[5:6], {"time_limit_s": 3.0}), ("bounded", SCENES[4:6], {})],
+)
+def test_a_scene_that_takes_too_long_loses_itself_alone(tmp_path, factory, scenes, limits):
+    trials = study_of(f"{__file__}:{factory}", scenes, does="hang", where="s05")
+    (failure,) = run_study(trials, tmp_path, workers=1, **limits).failures
+    assert failure.scene == "s05"
+    assert "stopped at the time limit of 3 s" in failure.error
+
+
+@pytest.mark.parametrize(("workers", "status"), [(0, "0"), (1, "1")])
+def test_a_system_that_exits_has_failed(tmp_path, workers, status):
+    trials = study_of(UNRULY, SCENES[:8], does="exit", where="s05", status=status)
+    (failure,) = run_study(trials, tmp_path, workers=workers).failures
+    assert failure.scene == "s05"
+    assert f"called sys.exit({status})" in failure.error
+
+
+@pytest.mark.parametrize(("workers", "does"), [(0, "exit"), (2, "raise")])
+def test_a_system_that_fails_everywhere_is_stopped_after_a_few(tmp_path, does, workers):
+    trials = study_of(UNRULY, count=12, does=does, status="0")
+    with pytest.raises(UserError, match=f"all of the first {FEW} trials failed") as caught:
+        run_study(trials, tmp_path / "run", workers=workers)
+    said = str(caught.value)
+    assert ("ValueError: no air anywhere" if does == "raise" else "sys.exit(0)") in said
+    assert "\n" not in said
+    (named,) = (f for f in (tmp_path / "run" / "failures").iterdir() if str(f) in said)
+    assert "Traceback" in named.read_text()
+
+
+def test_a_system_that_is_never_built_in_a_worker_is_not_waited_for(tmp_path, monkeypatch):
+    monkeypatch.setattr(dispatch, "LEAST_S", 1.0)
+    trials = study_of(f"{__file__}:slow_worker", parent=str(os.getpid()))
+    with pytest.raises(UserError, match=r"was not built in a worker process within 2 s: look"):
+        run_study(trials, tmp_path, workers=1, time_limit_s=2.0)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "workers"),
+    [("distance", 0), ("status", 0), ("object", 1), ("surrogate", 1), ("error", 1)],
+)
+def test_a_malformed_outcome_fails_its_trial_alone(tmp_path, wrong, workers):
+    trials = study_of(UNRULY, does=wrong, where="s05")
+    result = run_study(trials, tmp_path, workers=workers)
+    statuses = {row.outcome.scene: row.outcome.status for row in result.trials}
+    assert [scene for scene in SCENES if statuses[scene] is Status.FAILED] == ["s05"]
+    (failure,) = result.failures
+    assert failure.error
+    assert failure.error in failure.details.read_text()
+    assert run_study(trials, tmp_path, workers=0).outcomes_sha256 == result.outcomes_sha256
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said", "workers"),
+    [("nothing", "a NoneType", 1), ("dict", "a dict in place of", 0), ("order", "in order", 0)],
+)
+def test_no_outcomes_at_all_stop_the_study(tmp_path, wrong, said, workers):
+    with pytest.raises(WrongOutcomes, match=said):
+        run_study(study_of(UNRULY, does=wrong), tmp_path, workers=workers)
+
+
+def test_a_reading_that_is_no_number_costs_its_scene_alone(tmp_path):
+    trials = study_of(UNRULY, SCENES[4:8], does="lose its mass", where="s05")
+    (failure,) = run_study(trials, tmp_path, workers=0).failures
+    assert failure.scene == "s05"
+    assert "tap mass -> planner.thrust: the first reading is not finite" in failure.error
+
+
+def test_a_reader_that_writes_is_told_to_copy(tmp_path):
+    result = run_study(study_of(UNRULY, SCENES[4:8], does="write"), tmp_path, workers=0)
+    assert len(result.failures) == 4
+    assert "what a tap delivers cannot be written to" in result.failures[0].error
 
 
 @pytest.fixture(scope="module")
@@ -72,70 +162,8 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def _same_tables(one: Path, two: Path) -> bool:
-    names = ("outcomes.parquet", "traces.parquet")
-    return all((one / name).read_bytes() == (two / name).read_bytes() for name in names)
-
-
-def test_a_run_killed_at_any_moment_resumes_to_the_same_bytes(undisturbed, tmp_path):
-    folder = tmp_path / "run"
-    slow, gate, log = _slow(tmp_path)
-    process = _start(slow, folder, tmp_path / "out")
-    until(lambda: _shards(folder) >= 3, "three shards")
-    hang = tmp_path / "hang"
-    hang.touch()
-    until(lambda: len(_calls(log)) >= _shards(folder) + 2, "workers in the middle of a block")
-    process.kill()
-    process.wait()
-    workers = {int(call[-1]) for call in _calls(log)}
-    assert process.pid not in workers
-    until(lambda: not any(map(alive, workers)), "the workers' end")
-    hang.unlink()
-    gate.unlink()
-    kept = _shards(folder)
-    assert kept < UNITS
-    (folder / "shards" / ".partial-left").write_bytes(b"half a shard")
-    result = run_study(slow, folder, workers=2)
-    assert result.blocks_kept == kept
-    assert result.blocks_computed == UNITS - kept
-    assert _same_tables(undisturbed, folder)
-    assert not list(folder.rglob(".partial-*"))
-
-
-def test_ctrl_c_stops_the_workers_and_keeps_what_is_done(undisturbed, tmp_path):
-    folder = tmp_path / "run"
-    slow, gate, log = _slow(tmp_path)
-    process = _start(slow, folder, tmp_path / "out")
-    until(lambda: _shards(folder) >= 2, "two shards")
-    os.killpg(process.pid, signal.SIGINT)  # as a terminal does: parent and workers alike
-    assert process.wait(timeout=60) == 130
-    gate.unlink()
-    kept = _shards(folder)
-    assert f"interrupted with {kept} of {UNITS} blocks done" in (tmp_path / "out").read_text()
-    assert not any(alive(int(call[-1])) for call in _calls(log))
-    assert run_study(slow, folder, workers=2).blocks_kept == kept
-    assert _same_tables(undisturbed, folder)
-
-
-def test_two_processes_in_one_folder_do_each_block_once(undisturbed, tmp_path):
-    folder = tmp_path / "run"
-    slow, gate, log = _slow(tmp_path)
-    told = [tmp_path / "one", tmp_path / "two"]
-    processes = [_start(slow, folder, out) for out in told]
-    waiting = f"works in {folder}; waiting for it"
-    until(lambda: any(waiting in out.read_text() for out in told), "one to wait for the other")
-    gate.unlink()
-    assert [process.wait(timeout=60) for process in processes] == [0, 0]
-    outputs = [out.read_text() for out in told]
-    calls = [tuple(call[:-1]) for call in _calls(log)]
-    assert sum(f"computed {UNITS} kept 0" in out for out in outputs) == 1
-    assert waiting in next(out for out in outputs if f"computed 0 kept {UNITS}" in out)
-    assert len(calls) == UNITS
-    assert _same_tables(undisturbed, folder)
-
-
 def test_a_scene_that_fails_loses_itself_alone(undisturbed, tmp_path):
-    result = run_study(study(raises="s05"), tmp_path, workers=2)
+    result = run_study(study(raises="s05"), tmp_path, workers=0)
     sound = run_study(study(), undisturbed, workers=0)
     for row, expected in zip(result.trials, sound.trials, strict=True):
         if row.outcome.scene == "s05":
@@ -153,38 +181,14 @@ def test_a_scene_that_fails_loses_itself_alone(undisturbed, tmp_path):
         assert json.dumps(failure.treatment.variant) in text
 
 
-def test_what_failed_is_tried_again_and_nothing_else(undisturbed, tmp_path):
-    log, gate = tmp_path / "log", tmp_path / "no-air"
-    gate.touch()
-    options = {"raises": "s05", "while": str(gate), "log": str(log)}
-    first = run_study(study(**options), tmp_path / "run", workers=0)
-    assert first.failures
-    before = len(_calls(log))
-    again = run_study(study(**options), tmp_path / "run", workers=0)
-    assert again.failures == first.failures
-    assert {call[2][:3] for call in _calls(log)[before:]} <= {"s04", "s05", "s06", "s07"}
-
-    gate.unlink()
-    notices: list[str] = []
-    healed = run_study(study(**options), tmp_path / "run", workers=2, notice=notices.append)
-    assert not healed.failures
-    assert _same_tables(undisturbed, tmp_path / "run")
-    assert not list((tmp_path / "run" / "failures").iterdir())
-    assert _shards(tmp_path / "run") == UNITS
-    (notice,) = notices
-    assert notice.startswith(
-        "Kept 72 of 120 trials, from 20"
-    )  # a treatment stands twice in the table
-    assert "10 that failed are tried again" in notice
-
-
 def test_a_worker_that_dies_once_costs_nothing(undisturbed, tmp_path):
     once, log = tmp_path / "died", tmp_path / "log"
     mortal = study(dies="s05", once=str(once), log=str(log))
     result = run_study(mortal, tmp_path / "run", workers=2, recheck=False)
-    assert len(_calls(log)) == UNITS + 1  # its block ran again, as a whole
+    assert len(log.read_text().splitlines()) == UNITS + 1  # its block ran again, as a whole
     assert not result.failures
-    assert _same_tables(undisturbed, tmp_path / "run")
+    for name in ("outcomes.parquet", "traces.parquet"):
+        assert (tmp_path / "run" / name).read_bytes() == (undisturbed / name).read_bytes()
 
 
 def test_a_scene_that_kills_its_worker_loses_itself_alone(tmp_path):

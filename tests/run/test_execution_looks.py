@@ -5,17 +5,18 @@ from pathlib import Path
 import pytest
 from toy_study import SCENES, rows, study
 
-from faultpath.core.errors import Stopped, UserError
+from faultpath.core.errors import UserError
 from faultpath.run.execution.runner import RunResult, run_study
 from faultpath.run.plan import Study
 from faultpath.run.trials import Trials
-from faultpath.run.work.executor import Progress
 
 ORDER = ("s07", "s02", "s09", "s00", "s05", "s01", "s08", "s03", "s06", "s04")
 
 
-def sequential(scenes: tuple[str, ...] = ORDER, look: int = 2, **options: str) -> Study:
-    return study(scenes, **options).model_copy(update={"look": look, "rows": rows()[::3]})
+def sequential(scenes: tuple[str, ...] = ORDER, batch: int = 2, **options: str) -> Study:
+    return study(scenes, **options).model_copy(
+        update={"scenes_per_analysis": batch, "rows": rows()[::3]}
+    )
 
 
 def seen(table: Trials) -> set[str]:
@@ -24,11 +25,6 @@ def seen(table: Trials) -> set[str]:
 
 def after(count: int) -> object:
     return lambda table: len(seen(table)) >= count
-
-
-def same(one: Path, two: Path) -> bool:
-    names = ("outcomes.parquet", "traces.parquet", "deliveries.json")
-    return all((one / name).read_bytes() == (two / name).read_bytes() for name in names)
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +36,7 @@ def stopped(tmp_path_factory: pytest.TempPathFactory) -> tuple[RunResult, Path]:
 def test_it_holds_the_first_scenes_of_its_order_and_no_others(stopped, tmp_path):
     result, _ = stopped
     assert seen(result.trials) == set(ORDER[:6])
-    plain = run_study(sequential(tuple(sorted(ORDER[:6])), look=0), tmp_path, workers=0)
+    plain = run_study(sequential(tuple(sorted(ORDER[:6])), batch=0), tmp_path, workers=0)
     assert result.outcomes_sha256 == plain.outcomes_sha256
     assert [row.taps for row in result.deliveries.rows] == [r.taps for r in plain.deliveries.rows]
 
@@ -52,54 +48,12 @@ def test_every_look_is_taken_once_and_holds_all_scenes_before_it(tmp_path):
         looks.append(seen(table))
         return False
 
-    result = run_study(sequential(look=4), tmp_path, workers=2, stop=stop)
+    result = run_study(sequential(batch=4), tmp_path, workers=2, stop=stop)
     assert looks == [set(ORDER[:4]), set(ORDER[:8]), set(ORDER)]
     assert seen(result.trials) == set(SCENES)
 
 
-@pytest.mark.parametrize(("blocks", "workers"), [(1, 0), (8, 2)])
-def test_an_interrupted_run_stops_where_a_whole_one_does(stopped, tmp_path, blocks, workers):
-    _, folder = stopped
-
-    def cut(progress: Progress) -> None:
-        if progress.done >= 2 * blocks:
-            raise KeyboardInterrupt
-
-    with pytest.raises(Stopped):
-        run_study(sequential(), tmp_path, workers=2, progress=cut, stop=after(6))
-    run_study(sequential(), tmp_path, workers=workers, stop=after(6))
-    assert same(folder, tmp_path)
-
-
-def test_what_was_flown_beyond_the_stop_does_not_count(stopped, tmp_path):
-    _, folder = stopped
-    run_study(sequential(), tmp_path, workers=0)
-    again = run_study(sequential(), tmp_path, workers=0, stop=after(6))
-    assert again.blocks_computed == 0
-    assert same(folder, tmp_path)
-
-
-def test_more_scenes_go_on_with_what_was_flown(tmp_path):
-    first = run_study(sequential(ORDER[:4]), tmp_path, workers=0, stop=after(99))
-    more = run_study(sequential(), tmp_path, workers=0, stop=after(6))
-    assert more.blocks_kept == first.blocks_computed
-    assert seen(more.trials) == set(ORDER[:6])
-
-
-def test_a_failed_trial_is_tried_again_before_its_look_is_taken(tmp_path):
-    broken = tmp_path / "broken"
-    options = {"raises": "s09", "while": str(broken)}
-    whole = run_study(sequential(**options), tmp_path / "sound", workers=0, stop=after(6))
-    broken.touch()
-    result = run_study(sequential(**options), tmp_path / "run", workers=2, stop=after(6))
-    assert {failure.scene for failure in result.failures} == {"s09"}
-    broken.unlink()
-    again = run_study(sequential(**options), tmp_path / "run", workers=2, stop=after(6))
-    assert not again.failures
-    assert again.outcomes_sha256 == whole.outcomes_sha256
-
-
 def test_a_folder_is_not_both_of_a_fixed_number_and_sequential(stopped):
     _, folder = stopped
-    with pytest.raises(UserError, match="number of scenes from look to look"):
-        run_study(sequential(look=0), folder, workers=0)
+    with pytest.raises(UserError, match="number of scenes from analysis to analysis"):
+        run_study(sequential(batch=0), folder, workers=0)

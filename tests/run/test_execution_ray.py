@@ -3,11 +3,8 @@
 import os
 import re
 import signal
-import subprocess
-import sys
 import time
 from collections import Counter
-from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
@@ -17,15 +14,15 @@ from ray_nodes import cluster, node
 from toy_study import SYSTEM, UNITS, study, study_of
 
 import faultpath
-from faultpath.cli.main import INTERRUPTED
-from faultpath.core.errors import Notice, UserError
+from faultpath.core.errors import Notice, Stopped, UserError
 from faultpath.run import SystemSpec
 from faultpath.run.execution.runner import run_study
+from faultpath.run.store.folder import RunFolder
 from faultpath.run.work import ray_cluster
-from faultpath.run.work.executor import Failed, Lost, Returned, elsewhere, tell
+from faultpath.run.work.executor import Failed, Lost, Returned, elsewhere, send_message
 from faultpath.run.work.ray_cluster import RayWorkers
 
-UNRULY = Path(__file__).with_name("test_execution_limits.py")
+UNRULY = Path(__file__).with_name("test_execution_failures.py")
 OTHER = """
 import os
 from toy_system import ToySystem
@@ -55,51 +52,34 @@ def here(tmp_path_factory):
     return run_study(study(), tmp_path_factory.mktemp("here"), workers=0)
 
 
-def test_a_study_that_loses_a_node_ends_with_the_same_bytes(head, here, tmp_path):
-    """Two nodes of one CPU each hold a unit when one of them is killed."""
-    lost = head.add_node(**node())
-    gate, log = tmp_path / "gate", tmp_path / "log"
+@pytest.mark.parametrize("lost", ["node", "worker"])
+def test_a_study_that_loses_a_node_or_a_worker_ends_with_the_same_bytes(head, here, tmp_path, lost):
+    """All workers have begun a unit when the node of one, or the process of one, is killed."""
+    nodes = [head.add_node(**node())] if lost == "node" else []
+    gate, log, workers = tmp_path / "gate", tmp_path / "log", len(nodes) + 1
     gate.touch()
     log.touch()
 
     def kill(progress):
-        if gate.exists() and len(log.read_text().splitlines()) == 2:
-            head.remove_node(lost, allow_graceful=False)
-            workers = [int(line.split()[3]) for line in log.read_text().splitlines()]
+        begun = [int(line.split()[3]) for line in log.read_text().splitlines()]
+        if gate.exists() and len(begun) == workers:
+            for each in nodes:
+                head.remove_node(each, allow_graceful=False)
+            if not nodes:
+                os.kill(begun[0], signal.SIGKILL)
             # Until a worker has noticed that its node is gone, it would go on and finish its unit.
-            until(lambda: not all(map(alive, workers)), "a worker's end")
+            until(lambda: not all(map(alive, begun)), "a worker's end")
             gate.unlink()
 
     asked = study(hang_while=str(gate), log=str(log))
-    with RayWorkers(head.address, 2) as hands:
+    with RayWorkers(head.address, workers) as hands:
         there = run_study(asked, tmp_path / "there", executor=hands, progress=kill, recheck=False)
-        assert re.fullmatch(r"Ray \S+, 2 nodes", hands.name)
-    assert there.failures == ()
-    assert there.outcomes_sha256 == here.outcomes_sha256
-    flown = [line.split() for line in log.read_text().splitlines()]
-    assert len(flown) == UNITS + 1, "one unit was lost with its node and flown again"
-    assert max(Counter(pid for *_, pid in flown).values()) >= UNITS - 1
-
-
-def test_a_study_that_loses_a_worker_ends_with_the_same_bytes(head, here, tmp_path):
-    gate, log = tmp_path / "gate", tmp_path / "log"
-    gate.touch()
-    log.touch()
-
-    def kill(progress):
-        if gate.exists() and (begun := log.read_text().splitlines()):
-            os.kill(worker := int(begun[0].split()[3]), signal.SIGKILL)
-            until(lambda: not alive(worker), "a worker's end")
-            gate.unlink()
-
-    asked = study(hang_while=str(gate), log=str(log))
-    with RayWorkers(head.address, 1) as hands:
-        there = run_study(asked, tmp_path / "there", executor=hands, progress=kill, recheck=False)
+        assert re.fullmatch(rf"Ray \S+, {workers} nodes?", hands.name)
     assert there.failures == ()
     assert there.outcomes_sha256 == here.outcomes_sha256
     pids = [line.split()[3] for line in log.read_text().splitlines()]
-    assert len(pids) == UNITS + 1, "one unit was lost with its worker and run again"
-    assert pids[0] not in pids[1:]
+    assert len(pids) == UNITS + 1, "one unit was lost and run again"
+    assert max(Counter(pids).values()) >= UNITS - 1
 
 
 @pytest.mark.parametrize("error", ["OutOfMemoryError", "WorkerCrashedError"])
@@ -128,7 +108,7 @@ def test_workers_that_ray_stops_for_want_of_memory_are_waited_for(head, monkeypa
 def test_an_actor_is_a_worker_like_any_other(head):
     with RayWorkers(head.address, 1) as hands:
         heard = []
-        assert end_of(hands, partial(tell, "news"), heard.append) == Returned(None)
+        assert end_of(hands, partial(send_message, "news"), heard.append) == Returned(None)
         assert heard == ["news"]
         first = end_of(hands, os.getpid)
         assert end_of(hands, os.getpid) == first, "a number stands for a memory that stays"
@@ -150,64 +130,32 @@ def test_an_actor_is_a_worker_like_any_other(head):
     assert elsewhere() == ""
 
 
-@contextmanager
-def command(asked, folder, address):
-    """Run an audit by the command line until it has stored two units more than there were."""
-    stored = len(shards(folder))
-    options = {"executor": f"ray:{address}", "workers": 1, "out": folder}
-    line = [f"--{name}={value}" for name, value in (asked | options).items() if name != "system"]
-    main = [sys.executable, "-c", "from faultpath.cli.main import main; main()"]
-    with (
-        folder.with_name("words").open("w") as words,
-        subprocess.Popen(
-            [*main, "audit", asked["system"], *line], stdout=words, stderr=words
-        ) as process,
-    ):
-        until(
-            lambda: len(shards(folder)) >= stored + 2 or process.poll() is not None,
-            "two units",
-            seconds=180,
-        )
-        assert process.poll() is None
-        yield process
-
-
-def shards(folder):
-    return list(folder.glob("shards/*.parquet"))
-
-
-def test_a_command_that_was_stopped_and_then_killed_goes_on_to_the_same_bytes(
+def test_an_audit_that_was_stopped_on_a_cluster_goes_on_there_to_the_same_bytes(
     head, tmp_path, monkeypatch
 ):
-    gate, folder = tmp_path / "slow", tmp_path / "there"
-    asked = {"system": SYSTEM, "baseline": "plain", "repair": "observed", "library": "ten"}
-    asked |= {"fault": "mass:scale=0.6", "seeds": "0,1,2,3"}
-    line = asked | {"set": f"slow_while={gate}"}
-    gate.touch()
-    with command(line, folder, head.address) as stopped:
-        stopped.send_signal(signal.SIGINT)
-    assert stopped.returncode == INTERRUPTED
-    (said,) = [each for each in words(folder) if each.startswith("faultpath: interrupted with")]
-    assert "run the same again to resume" in said
-    with command(line, folder, head.address) as killed:
-        killed.kill()
-    kept = len(shards(folder))
-    gate.unlink()
-    asked |= {"seeds": range(4), "options": {"slow_while": str(gate)}, "progress": False}
-    alone = faultpath.audit(folder=tmp_path / "alone", workers=0, **asked)
+    asked = {"baseline": "plain", "repair": "observed", "library": "ten", "seeds": range(2)}
+    asked |= {"system": SYSTEM, "fault": "mass:scale=0.6", "progress": False}
     monkeypatch.setenv("RAY_ADDRESS", head.address)
-    there = faultpath.audit(folder=folder, executor="ray", workers=1, **asked)
-    assert there.provenance.blocks_kept == kept >= 4
-    assert there.provenance.blocks_computed > 0
+    there = partial(faultpath.audit, folder=tmp_path / "there", executor="ray", workers=1, **asked)
+    save = RunFolder.save_shard
+
+    def stop(folder, *shard):
+        save(folder, *shard)
+        if len(folder.list_shards()) == 4:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(RunFolder, "save_shard", stop)
+    with pytest.raises(Stopped, match="the same again to resume"):
+        there()
+    monkeypatch.setattr(RunFolder, "save_shard", save)
+    run, alone = there(), faultpath.audit(folder=tmp_path / "alone", workers=0, **asked)
+    assert run.provenance.blocks_kept == 4
+    assert run.provenance.blocks_computed > 0
     for table in ("outcomes.parquet", "traces.parquet"):
-        assert (folder / table).read_bytes() == (tmp_path / "alone" / table).read_bytes()
-    assert there.record == alone.record
-    assert (there.provenance.workers, alone.provenance.executor) == (1, "")
-    assert there.provenance.executor in (folder / "report.html").read_text()
-
-
-def words(folder):
-    return folder.with_name("words").read_text().splitlines()
+        assert (run.folder / table).read_bytes() == (alone.folder / table).read_bytes()
+    assert run.record == alone.record
+    assert (run.provenance.machine.workers, alone.provenance.machine.executor) == (1, "")
+    assert run.provenance.machine.executor in (run.folder / "report.html").read_text()
 
 
 @pytest.mark.parametrize(

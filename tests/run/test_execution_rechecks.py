@@ -117,7 +117,7 @@ def test_a_run_killed_between_second_runs_ends_with_the_same_tables(tmp_path, ki
     for flights in range(2):
         folder = tmp_path / str(flights)
         with monkeypatch.context() as patched:
-            patched.setattr(Rechecks, "settle", _stopping(flights))
+            patched.setattr(Rechecks, "handle_reply", _stopping(flights))
             with pytest.raises(Stopped):
                 run_study(trials, folder, workers=0)
         result = run_study(trials, folder, workers=0)
@@ -127,12 +127,12 @@ def test_a_run_killed_between_second_runs_ends_with_the_same_tables(tmp_path, ki
 
 
 def _stopping(after: int):
-    settle, flights = Rechecks.settle, itertools.count()
+    handle_reply, flights = Rechecks.handle_reply, itertools.count()
 
     def stopping(self, *arguments):
         if next(flights) == after:
             raise KeyboardInterrupt
-        settle(self, *arguments)
+        handle_reply(self, *arguments)
 
     return stopping
 

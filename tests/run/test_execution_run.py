@@ -12,7 +12,6 @@ from toy_system import STEPS
 from faultpath.core.errors import UserError
 from faultpath.core.files import parquet
 from faultpath.loop import NotDelivered, TapCount, UndeclaredReader
-from faultpath.run import Deliveries
 from faultpath.run.execution.runner import RunResult, run_study
 from faultpath.run.execution.schedule import plan
 from faultpath.run.plan import Row, Study, Treatment
@@ -86,27 +85,6 @@ def test_a_selection_in_any_order_gives_the_rows_of_the_whole(whole, tmp_path, s
     part = run_study(study(scenes), tmp_path, workers=0)
     expected = tuple(r for r in result.trials if r.outcome.scene in scenes)
     assert _comparable(part.trials) == _comparable(expected)
-
-
-def test_a_quick_look_grows_into_the_whole_and_then_nothing_is_computed(whole, tmp_path):
-    result, _ = whole
-    log, folder = tmp_path / "log", tmp_path / "run"
-    look, grown = (
-        run_study(study(scenes, log=str(log)), folder, workers=0) for scenes in (SCENES[:4], SCENES)
-    )
-    assert grown.blocks_kept == look.blocks_computed
-    assert grown.blocks_computed == UNITS - look.blocks_computed
-    assert grown.outcomes_sha256 == result.outcomes_sha256
-    assert grown.deliveries == result.deliveries != look.deliveries
-
-    before = log.read_text()
-    again = run_study(study(log=str(log)), folder, workers=2)
-    assert log.read_text() == before
-    assert (again.blocks_computed, again.blocks_kept) == (0, UNITS)
-    assert again.outcomes_sha256 == result.outcomes_sha256
-    assert again.deliveries == result.deliveries
-    stored = (folder / "deliveries.json").read_bytes()
-    assert Deliveries.model_validate_json(stored) == result.deliveries
 
 
 def test_every_row_brings_what_its_taps_did(whole):
@@ -189,13 +167,13 @@ def _study_of(*rows: Row, scenes: tuple[str, ...] = SCENES) -> Study:
     return study().model_copy(update={"rows": rows, "scenes": scenes})
 
 
-@pytest.mark.parametrize("workers", [0, 1])
 @pytest.mark.parametrize(
-    ("variant", "reader", "error"),
+    ("variant", "reader", "error", "workers"),
     [
-        ("deaf", "observer.balance", NotDelivered),
-        ("nosy", "planner.thrust", UndeclaredReader),
-        ("plain", "observer.balance", UserError),
+        ("deaf", "observer.balance", NotDelivered, 0),
+        ("nosy", "planner.thrust", UndeclaredReader, 0),
+        ("nosy", "planner.thrust", UndeclaredReader, 1),
+        ("plain", "observer.balance", UserError, 0),
     ],
 )
 def test_an_audit_that_is_wrong_stops(tmp_path, variant, reader, error, workers):

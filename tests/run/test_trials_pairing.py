@@ -5,54 +5,31 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from outcomes import outcome, trial
 
-from faultpath.run import (
-    Group,
-    PairingRefused,
-    Pairs,
-    Trial,
-    Trials,
-    pair,
-)
-from faultpath.system.outcome import Outcome, Status
+from faultpath.run import Group, PairingRefused, Pairs, Trial, Trials, pair
+from faultpath.system import Status
 
 ONE, TWO = Group("repair", "shared"), Group("baseline", "shared")
 SCENES = ("a", "b", "c")
 SEEDS = (3, 5)
 
 
-def _outcome(scene: str, seed: int, success: bool, distance: float | None = 1.0) -> Outcome:
-    return Outcome(
-        scene=scene,
-        status=Status.SUCCESS if success else Status.CRASH,
-        time_s=2.0 + seed,
-        metrics={} if distance is None else {"distance": distance},
-        initial_hash=f"i-{scene}",
-        disturbance_hash=f"d-{scene}",
-        planner_noise_hash=f"n-{scene}-{seed}",
-    )
-
-
 def _table(change: Callable[[Trial], Trial] = lambda row: row) -> Trials:
     """Only the repair succeeds in `a`; both do in `b`; with seed 5 only the baseline in `c`."""
     wins = {ONE: {"a": SEEDS, "b": SEEDS, "c": ()}, TWO: {"a": (), "b": SEEDS, "c": (5,)}}
     return Trials.of(
-        tuple(
-            change(
-                Trial(
-                    side.variant,
-                    side.condition,
-                    seed,
-                    index,
-                    "open",
-                    _outcome(scene, seed, seed in wins[side][scene]),
-                )
-            )
-            for side in (ONE, TWO)
-            for seed in SEEDS
-            for index, scene in enumerate(SCENES)
-        )
+        change(_trial(side, seed, index, seed in wins[side][scene]))
+        for side in (ONE, TWO)
+        for seed in SEEDS
+        for index, scene in enumerate(SCENES)
     )
+
+
+def _trial(side: Group, seed: int, index: int, success: bool) -> Trial:
+    status = Status.SUCCESS if success else Status.CRASH
+    fields = {"scene": SCENES[index], "time_s": 2.0 + seed, "metrics": {"distance": 1.0}}
+    return trial(side.variant, side.condition, index, status, seed=seed, **fields)
 
 
 def whole(pairs: Pairs) -> list[str]:
@@ -94,7 +71,7 @@ def test_other_conditions_void_the_pair_and_name_both_hashes(name, what):
     assert (pairs.void.sum(), whole(pairs)) == (1, ["a", "c"])
     (mismatch,) = pairs.mismatches
     assert f"in scene 'b' (seed 5): their {what} differ ({name} 'other' and " in str(mismatch)
-    assert repr(getattr(_outcome("b", 5, success=True), name)) in str(mismatch)
+    assert repr(getattr(outcome("b", seed=5), name)) in str(mismatch)
     np.testing.assert_array_equal(pairs.whole().success[1], [[0, 0], [0, 1]])
 
 
@@ -165,9 +142,7 @@ def test_what_was_run_once_is_paired_with_every_seed_of_the_other_side():
 
 
 def test_trials_that_share_nothing_do_not_take_all_memory():
-    trials = [
-        Trial(f"v{n}", f"c{n}", n, n, "", _outcome(f"s{n}", n, success=True)) for n in range(100)
-    ]
+    trials = [trial(f"v{n}", f"c{n}", n, seed=n) for n in range(100)]
     with pytest.raises(ValueError, match="hardly any variant"):
         Trials.of(trials)
     with pytest.raises(ValueError, match="two trials have the same"):

@@ -152,58 +152,6 @@ def test_a_system_that_fails_to_load_leaves_nothing_and_may_be_corrected(tmp_pat
     assert load_system(SystemSpec(name=f"{folder}/mine.py:create")).name == "corrected"
 
 
-SIDE_EFFECTS = """
-import os, random, signal, sys
-import numpy as np, torch
-
-def state():
-    cudnn = torch.backends.cudnn
-    return {
-        "threads": torch.get_num_threads(),
-        "threads between": torch.get_num_interop_threads(),
-        "gradients": torch.is_grad_enabled(),
-        "precision": (torch.get_default_dtype(), torch.get_float32_matmul_precision()),
-        "cudnn": (cudnn.allow_tf32, cudnn.deterministic, cudnn.benchmark),
-        "draws": (torch.get_rng_state().tolist(), random.getstate(), repr(np.random.get_state())),
-        "rounding": np.geterr(),
-        "environment": dict(os.environ),
-        "folder": os.getcwd(),
-        "signals": [signal.getsignal(each) for each in sorted(signal.valid_signals())],
-        "hooks": (list(sys.meta_path), list(sys.path_hooks), sys.excepthook),
-    }
-
-torch.set_num_threads(3)
-before, path = state(), list(sys.path)
-from faultpath.run import Treatment, SystemSpec, load_system
-from faultpath.run.attempt import Done, attempt
-system = load_system(SystemSpec(name=sys.argv[1]))
-(name,), library = list(system.variants)[:1], system.library(sys.argv[2])
-assert isinstance(attempt(system, Treatment(variant=name), [library.scenes[0].id]), Done)
-after = state()
-print([name for name in before if before[name] != after[name]])
-print([place for place in sys.path if place not in path], sys.path[: len(path)] == path)
-"""
-
-
-@pytest.mark.parametrize(
-    ("name", "library"),
-    [("quadrotor", "selection"), (f"{ROOT}/examples/toy.py:create", "carts")],
-    ids=["quadrotor", "file"],
-)
-def test_the_process_of_the_caller_stays_as_it_was(name, library):
-    """Threads of torch, environment, random states: whoever runs a system has other work too."""
-    environment = {n: v for n, v in os.environ.items() if "NUM_THREADS" not in n}
-    done = subprocess.run(
-        [sys.executable, "-P", "-c", SIDE_EFFECTS, name, library],
-        check=True,
-        capture_output=True,
-        text=True,
-        env=environment,
-    )
-    beside = [] if name == "quadrotor" else [str(ROOT / "examples")]
-    assert done.stdout.splitlines() == ["[]", f"{beside} True"]
-
-
 @pytest.mark.parametrize(
     ("factory", "builds"),
     [

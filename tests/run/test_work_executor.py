@@ -12,8 +12,7 @@ import calls
 import pytest
 from calls import alive, end_of, until
 
-from faultpath.core.errors import UserError
-from faultpath.run.work.executor import Failed, Here, Lost, Returned, WorkerLost, run_all
+from faultpath.run.work.executor import Failed, Lost, Returned, WorkerLost, run_all
 from faultpath.run.work.processes import Processes, local
 
 BOTH = pytest.mark.parametrize("workers", [0, 2])
@@ -34,7 +33,7 @@ def test_what_a_call_tells_is_heard_before_its_end(workers):
     with local(workers) as executor:
         assert end_of(executor, partial(calls.count, 3), heard.append) == Returned(3)
         assert heard == [0, 1, 2]
-    calls.tell("nobody")
+    calls.send_message("nobody")
 
 
 @BOTH
@@ -144,9 +143,3 @@ def test_workers_end_with_their_parent_however_it_ends(how, tmp_path):
         # Ctrl-C of a terminal reaches parent and workers alike
         (os.killpg if how == signal.SIGINT else os.kill)(parent.pid, how)
     until(lambda: not any(map(alive, pids)))
-
-
-def test_a_number_of_workers_below_zero_is_refused():
-    assert isinstance(local(0), Here)
-    with pytest.raises(UserError, match="the number of workers is -1: use 0"):
-        local(-1)

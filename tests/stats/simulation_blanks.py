@@ -68,7 +68,7 @@ def judged(
     with ExitStack() as stack:
         for name, value in unread.items():
             stack.enter_context(patch(f"faultpath.analyses.{name}", return_value=value))
-        return decide(laid.question, laid.conditions, laid.trials, laid.findings)
+        return decide(laid.question, laid.facts, laid.conditions, laid.trials, laid.findings)
 
 
 def drawn(

@@ -63,8 +63,8 @@ def test_the_interval_leaves_out_0_exactly_where_the_test_rejects(scenes):
         for losses in range(scenes + 1 - wins):
             found = effect(*variants(wins, losses, scenes))
             assert found.test is not None
-            assert (found.side != 0) == (found.test.p_value <= 0.05)
-            assert found.side in (0, found.test.leans)
+            assert (found.sign_of_interval != 0) == (found.test.p_value <= 0.05)
+            assert found.sign_of_interval in (0, found.test.leans)
             assert found.test.leans == np.sign(wins - losses)
             low, high = found.interval
             assert -100.0 <= low < high <= 100.0

@@ -57,7 +57,7 @@ def test_interval_and_test_have_to_point_the_same_way():
     assert found.value < 0
     assert found.detected == 0
     contrary = contrast(0.0001, low=-3.0, high=-1.0, leans=1)
-    assert contrary.side == -1
+    assert contrary.sign_of_interval == -1
     assert contrary.detected == 0
     assert decide_family({"it": contrary})["it"].sign == 0
 

@@ -49,7 +49,11 @@ def test_power_agrees_with_enumerating_every_table(n, rate, lean, alpha):
     for first in range(n + 1):
         for second in range(n + 1 - first):
             both = with_test(success_effect(*counted(first, second, n), resamples))
-            if both.test.leans and both.test.leans == both.side and both.test.rejects(alpha):
+            if (
+                both.test.leans
+                and both.test.leans == both.sign_of_interval
+                and both.test.rejects(alpha)
+            ):
                 assert binomtest(first, first + second).pvalue <= alpha
                 expected += binom.pmf(first + second, n, rate) * binom.pmf(
                     first, first + second, p_first / (p_first + p_second)

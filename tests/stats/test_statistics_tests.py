@@ -118,7 +118,7 @@ def test_power_takes_the_test_that_decides(alpha):
         losses = np.arange(3) < np.maximum(-sums, 0)[:, np.newaxis]
         effect = found(wins, losses, graded=True)
         counts = np.array([[(sums == size).sum() for size in range(-3, 4)]], dtype=float)
-        expected = effect.test.p_value <= alpha and effect.side != 0
+        expected = effect.test.p_value <= alpha and effect.sign_of_interval != 0
         assert detected(values, counts, alpha, graded=True)[0] == expected
 
 
@@ -146,7 +146,7 @@ def test_in_skewed_populations_the_level_is_kept():
 def test_interval_and_test_agree(variants):
     effect = found(*variants, graded=True)
     low, high = effect.interval
-    assert effect.test.rejects() == (effect.side != 0)
+    assert effect.test.rejects() == (effect.sign_of_interval != 0)
     assert low <= effect.value <= high
 
 
@@ -168,7 +168,7 @@ def test_power_and_changes_take_the_same_test(one, two):
     variants = (one[..., :seeds], two[..., :seeds])
     pair = [success_effect(*pair, RESAMPLES, graded=True) for pair in variants]
     moved = with_test(change(*pair))
-    assert moved.test.rejects() == (moved.side != 0)
+    assert moved.test.rejects() == (moved.sign_of_interval != 0)
     values = np.arange(-2 * seeds, 2 * seeds + 1) / seeds
     counts = np.array([[np.isclose(moved.scenes.values, each).sum() for each in values]]) * 1.0
     rejected = score.degrees_rejects(values, counts, moved.scenes.bound, 0.05)[0]

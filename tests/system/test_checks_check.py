@@ -6,9 +6,9 @@ import re
 
 import pytest
 from checked import BROKEN, LOOPS, ROOT, check, failed
+from cli_runs import faultpath
 from gym_toys import functions
 
-from faultpath.cli.main import main
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.loop import Taps
 from faultpath.run.check.judging import remedy
@@ -225,11 +225,6 @@ def test_a_modules_ports_are_what_it_looks_at(broken, says):
     assert any("'pilot'" in each and says in each for each in found["declared reads"]), found
 
 
-def test_what_differs_from_process_to_process_takes_workers_to_see():
-    assert failed(check(broken="hash of a text")) == {}
-    assert set(failed(check(broken="hash of a text", workers=1))) == {"determinism"}
-
-
 @pytest.mark.parametrize(
     ("question", "says"),
     [({"variants": ("bear",)}, "did you mean 'bare'"), ({"scenes": 7}, "1 to 6")],
@@ -239,20 +234,15 @@ def test_what_cannot_be_checked_is_refused(question, says):
         check(**question)
 
 
-def test_the_command_says_it_in_lines_and_as_json(capsys, monkeypatch):
-    def run(*arguments: str) -> tuple[int, str]:
-        monkeypatch.setattr("sys.argv", ["faultpath", "check", *arguments, "--workers", "0"])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        return int(ended.value.code or 0), capsys.readouterr().out
-
-    code, said = run(BROKEN)
-    assert (code, said.splitlines()[-1]) == (0, "No check failed; 1 remark.")
-    code, said = run(BROKEN, "--broken", "deaf", "--json", "--scenes", "2")
-    assert code == 1
-    counts = [len(each["failures"]) for each in json.loads(said)["checks"]]
+def test_the_command_says_it_in_lines_and_as_json():
+    line = ("check", BROKEN, "--workers", 0)
+    ended = faultpath(*line)
+    assert (ended.status, ended.out.splitlines()[-1]) == (0, "No check failed; 1 remark.")
+    ended = faultpath(*line, "--broken", "deaf", "--json", "--scenes", 2)
+    assert ended.status == 1
+    counts = [len(each["failures"]) for each in json.loads(ended.out)["checks"]]
     assert counts == [0, 0, 0, 0, 1, 0, 0, 0]
-    assert run(BROKEN, "--variants", "bear")[0] == 2
+    faultpath(*line, "--variants", "bear").refused("did you mean 'bare'")
 
 
 def test_a_file_that_is_read_undeclared_fails_a_check_of_its_own(tmp_path) -> None:

@@ -2,11 +2,11 @@
 
 import json
 import re
-from pathlib import Path
 
 import pytest
+from checked import BROKEN, LOOPS
+from cli_runs import ROOT, TOY, faultpath
 
-from faultpath.cli.main import main
 from faultpath.core.errors import UserError
 from faultpath.faults import FaultText
 from faultpath.interface import Provenance
@@ -15,10 +15,7 @@ from faultpath.run import SystemSpec, load_system
 from faultpath.run.check.tracing import trace_system
 from faultpath.run.question import TraceQuestion
 
-ROOT = Path(__file__).resolve().parents[2]
-HERE = Path(__file__).parent
-BROKEN, LOOPS = f"{HERE / 'broken.py'}:create", f"{HERE / 'broken_loops.py'}:create"
-TOY, DOCK = f"{ROOT / 'examples/toy.py'}:create", f"{ROOT / 'examples/dock.py'}:create"
+DOCK = f"{ROOT / 'examples/dock.py'}:create"
 
 
 def trace(name, variant, fault=None, library="selection", **options):
@@ -97,20 +94,14 @@ def test_what_cannot_be_traced_is_refused(more, said):
         trace_system(system, SystemSpec(name=TOY), TraceQuestion(**more))
 
 
-def test_the_command_prints_and_exits_with_what_was_found(capsys, monkeypatch):
-    def run(*arguments: str) -> tuple[int, str]:
-        monkeypatch.setattr("sys.argv", ["faultpath", "trace", *arguments])
-        with pytest.raises(SystemExit) as ended:
-            main()
-        return int(ended.value.code or 0), capsys.readouterr().out
-
-    code, said = run(TOY, "--variant", "blind", "--fault", "gain:scale=0.6")
-    assert code == 0
-    assert "What ran is what is declared." in said
-    lines = said.splitlines()
+def test_the_command_prints_and_exits_with_what_was_found():
+    ended = faultpath("trace", TOY, "--variant", "blind", "--fault", "gain:scale=0.6")
+    assert ended.status == 0
+    assert "What ran is what is declared." in ended.out
+    lines = ended.out.splitlines()
     assert max(len(each) for each in lines) <= 80
     (reached,) = (line for line in lines if line.startswith("controller.inverse") and "by" in line)
     assert "gain scaled by 0.6 gain_estimate 0 1 2 0 1 2" in " ".join(reached.split())
-    code, said = run(BROKEN, "--broken", "nosy", "--json")
-    assert (code, len(json.loads(said)["findings"])) == (1, 1)
-    assert run(BROKEN, "--fault", "mass:scale=2@guard")[0] == 2
+    ended = faultpath("trace", BROKEN, "--broken", "nosy", "--json")
+    assert (ended.status, len(json.loads(ended.out)["findings"])) == (1, 1)
+    faultpath("trace", BROKEN, "--fault", "mass:scale=2@guard").refused("guard")

@@ -1,13 +1,11 @@
 """Gymnasium's environments as plants: ends of episodes, scenes, what follows from what runs."""
 
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 import pytest
 from gym_toys import SCENES, Keyed, Steer, Walk, fly, plant, system
 
-import faultpath
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.loop import Port
 from faultpath.run import SystemSpec, Treatment
@@ -18,8 +16,6 @@ from faultpath.run.store.signals import DRAWN
 from faultpath.system import ComposedSystem, writes
 from faultpath.system.checks import UNNAMED
 from faultpath.system.episodes import EpisodePlant
-
-PENDULUM = Path(__file__).resolve().parents[2] / "examples" / "pendulum.py"
 
 
 def test_a_finished_episode_is_frozen_as_it_ended():
@@ -241,23 +237,3 @@ def test_scenes_are_the_same_wherever_the_file_of_a_system_lies(tmp_path):
     assert "faultpath_system_:Own" in here
     assert "function" in here
     assert here == there
-
-
-def test_the_pendulums_repair_helps_against_the_isolated_fault_and_hurts_under_the_shared(tmp_path):
-    run = faultpath.audit(
-        PENDULUM,
-        baseline="calibrated",
-        repair="nominal",
-        fault="motor_gain:scale=0.8",
-        library="training",
-        scenes=12,
-        workers=0,
-        folder=tmp_path / "run",
-        progress=False,
-    )
-    assert run.failed == 0
-    assert run.record.findings == ()
-    effects = {effect.condition: effect.value for effect in run.record.effects}
-    assert effects["filter"] > 0 > effects["shared"]
-    metrics = {of.condition: of.metrics["offset_m"] for of in run.record.secondary}
-    assert metrics["filter"].value < 0 < metrics["shared"].value

@@ -53,7 +53,7 @@ def test_a_single_library_is_taken_and_named_where_none_is_asked_for(tmp_path, m
     assert faultpath.check(system, scenes=1, **how).library == "few"
     versions = {"baseline": "calibrated", "repair": "typical", "fault": "gain:scale=0.6"}
     run = faultpath.audit(system, **versions, signals=False, **how)
-    assert run.record.question.library == "few"
+    assert run.record.facts.library == "few"
     assert "-few-" in run.folder.name
     assert "Scenes of 'few', the only library of this system." in caplog.messages
 

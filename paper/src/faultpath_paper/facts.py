@@ -1,10 +1,8 @@
 """Facts that the paper states, and how the project stands to each."""
 
 from functools import cache
-from itertools import groupby
 from typing import Literal, get_args
 
-from faultpath.analyses.tables import Entry, Line, Table, line
 from faultpath.core.results import Frozen
 from faultpath_paper.cells import data
 
@@ -44,36 +42,12 @@ class FactGroup(Frozen):
 
 
 @cache
-def groups() -> tuple[FactGroup, ...]:
-    """Return every group of `data/facts.yaml`, in the order of the paper."""
-    return tuple(FactGroup.model_validate(entry) for entry in data("facts.yaml"))
+def groups(section: str = "") -> tuple[FactGroup, ...]:
+    """Return the groups of `data/facts.yaml`, or those of a section, in the order of the paper."""
+    every = (FactGroup.model_validate(entry) for entry in data("facts.yaml"))
+    return tuple(group for group in every if section in ("", group.section))
 
 
-def facts() -> tuple[Fact, ...]:
-    """Return every fact."""
-    return tuple(fact for group in groups() for fact in group.facts)
-
-
-def counted() -> Table:
-    """Return how many facts have each standing, section by section."""
-    lines: list[Line] = []
-    for section, parts in groupby(groups(), lambda group: group.section):
-        states = [fact.state for group in parts for fact in group.facts]
-        lines.append(line(SECTIONS[section], *(str(states.count(state)) for state in STANDINGS)))
-    states = [fact.state for fact in facts()]
-    lines.append(line("All", *(str(states.count(state)) for state in STANDINGS)))
-    return Table(corner="Section of the paper", columns=STANDINGS, lines=tuple(lines))
-
-
-def listed(section: str) -> Table:
-    """Return all facts of a section, each with its place in the code."""
-    columns = ("The paper", "Here", "What ours is, and why", "Where")
-    lines: list[Line] = []
-    for group in groups():
-        if group.section == section:
-            lines.append(Line(label=group.heading))
-            for fact in group.facts:
-                state = Entry(text=fact.state, tone="bad" if fact.state == "otherwise" else "")
-                entries = fact.fact, state, fact.ours, "; ".join(fact.at)
-                lines.append(line(str(fact.number), *entries))
-    return Table(corner="Fact", columns=columns, lines=tuple(lines), words=columns)
+def facts(section: str = "") -> tuple[Fact, ...]:
+    """Return every fact, or those of a section."""
+    return tuple(fact for group in groups(section) for fact in group.facts)

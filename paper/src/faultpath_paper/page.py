@@ -9,23 +9,10 @@ from typing import TypeAlias
 from faultpath.analyses.sentences import wording
 from faultpath.analyses.tables import Line, Table
 from faultpath_paper.answers import Sweep
-from faultpath_paper.cells import Cell
+from faultpath_paper.cells import Cell, data
 from faultpath_paper.entries import EntryGroup, Figure, PublishedContrast, difference, success
 from faultpath_paper.evidence.table import Measured, Measurement
 from faultpath_paper.results import NotRun, Results
-
-INTERVALS = (
-    "Intervals, 95 %, for these trained models and recorded executions: percentile bootstrap of "
-    "scene-wise mean differences, as in the paper. Score intervals (Tango's; over seeds "
-    "cluster-robust) stand beside it and are not tested. Bold, differences in success alone: "
-    "the bootstrap's interval excludes 0, and for one seed exact McNemar rejects at 0.05 too."
-)
-WINS = "Wins:losses: scenes in which only the first, or only the second, succeeded, seed by seed."
-FLOWN_ONCE = (
-    "DOB, and zero and true wind with the predictor of seed 0, are not trained anew: they are "
-    "flown once, with the planner noise of seed 0, and paired with each trained seed."
-)
-WINDOWS = "Errors: median over all windows, 20 control steps ahead."
 
 
 def flown(results: Results, cells: Iterable[Cell]) -> str:
@@ -155,6 +142,15 @@ class TableSpec:
         )
 
 
+def table(name: str, *rows: TableRow | Columns, **numbers: object) -> TableSpec:
+    """Return a table with its title, headings and notes of `data/tables.yaml`; `numbers` are what
+    its notes name beside `{flown}` and `{recorded}`."""
+    texts = data("tables.yaml")
+    own, fields = texts[name], {"flown": "{flown}", "recorded": "{recorded}", **texts["notes"]}
+    notes = (note.format(**fields, **numbers) for note in own["notes"])
+    return TableSpec(name, own["title"], tuple(own["columns"]), rows, tuple(notes))
+
+
 @dataclass(frozen=True)
 class FigureSpec:
     """A figure of lines, and the cells and measurements that they come from."""
@@ -171,7 +167,6 @@ class Page:
 
     name: str
     """Such as `table-2`."""
-    title: str
     parts: tuple[TableSpec | FigureSpec, ...] = ()
     cells: tuple[Cell, ...] = ()
     """Cells that the page needs run; those of its parts are added."""

@@ -148,7 +148,7 @@ def carry_out(plan: ReproductionPlan, job: Job) -> ReproductionRun:
 
 def write_pages(place: Path, record: Reproduction, provenance: RunProvenance) -> None:
     """Write the page, the tables and the ledger of a reproduction into a folder."""
-    page = reproduction_page(record, provenance, of_page(record, provenance.data))
+    page = reproduction_page(record, provenance, of_page(record, provenance.code.data))
     write_text(place / "reproduction.html", page, place)
     write_text(place / "tables.md", "\n\n".join(map(markdown.block, record.tables)) + "\n", place)
     write_text(place / "ledger.md", ledger_markdown(record.ledger, record.profile), place)

@@ -123,7 +123,7 @@ def detection(contrast: Contrast) -> Sign:
     """
     if contrast.n_seeds == 1:
         return contrast.detected
-    return contrast.side if contrast.enough else 0
+    return contrast.sign_of_interval if contrast.enough else 0
 
 
 def decisive(contrast: Contrast, notable: float | None = None) -> Contrast:

@@ -183,7 +183,7 @@ def read_results(folder: Path) -> tuple[Results, Reproduction]:
                 "again."
             ) from None
         named = {name: digest for name, digest in provenance.files.items() if name in RESULTS}
-        unseal(folder, {OUTCOMES: provenance.outcomes_sha256, **named}, ())
+        unseal(folder, named, ())
     try:
         record = model_of(contents(folder / CONCLUSIONS, LARGEST_TEXT), Reproduction)
     except (OSError, Misread):

@@ -6,7 +6,7 @@ Torch leaves both to a library that chooses its code by who made the processor.
 import torch
 from torch import Tensor
 
-from faultpath_quadrotor.native.kernel_args import lend
+from faultpath_quadrotor.native.kernel_args import as_kernel_argument
 from faultpath_quadrotor.native.library import kernels_on
 
 _NAMES = {
@@ -26,9 +26,9 @@ def sine_cosine(angle: Tensor) -> tuple[Tensor, Tensor]:
     sine, cosine = (torch.empty(angle.shape, dtype=angle.dtype) for _ in range(2))
     built.call(
         _NAMES[angle.dtype],
-        lend("angle", angle.contiguous(), *angle.shape, dtype=angle.dtype),
+        as_kernel_argument("angle", angle.contiguous(), *angle.shape, dtype=angle.dtype),
         angle.numel(),
-        lend("sine", sine, *angle.shape, dtype=angle.dtype),
-        lend("cosine", cosine, *angle.shape, dtype=angle.dtype),
+        as_kernel_argument("sine", sine, *angle.shape, dtype=angle.dtype),
+        as_kernel_argument("cosine", cosine, *angle.shape, dtype=angle.dtype),
     )
     return sine, cosine

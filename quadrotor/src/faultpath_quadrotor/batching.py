@@ -1,14 +1,16 @@
 """Batch axes: taps have scenes first, arithmetic has lanes last, planners take chunks of scenes."""
 
+from abc import abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import torch
 from torch import Tensor
+from typing_extensions import override
 
-from faultpath.loop import Batch
+from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Query
 from faultpath_quadrotor.device import host_readable, send
 from faultpath_quadrotor.state import padded_lanes
 
@@ -37,6 +39,32 @@ def scenes_first(value: Tensor, count: int) -> Tensor:
 def lanes_last(value: Tensor, lanes: Tensor) -> Tensor:
     """Turn `[B, ...]` scenes into contiguous `[..., L]` lanes."""
     return value.movedim(0, -1)[..., lanes]
+
+
+class LaneModule(Module):
+    """A module that computes with lanes last: this is where its readings and outputs are turned."""
+
+    def __init__(self, device: torch.device) -> None:
+        self._device = device
+
+    @override
+    def begin(self, batch: Batch) -> Memory:
+        return lanes_of(batch, self._device), len(batch.scenes), None
+
+    @override
+    def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
+        lanes, count, known = memory
+        readings = {read: lanes_last(value, lanes) for read, value in inputs.items()}
+        outputs, known = self.compute(readings, inputs.step, known)
+        turned = {
+            source: value if isinstance(value, Query) else scenes_first(value, count)
+            for source, value in outputs.items()
+        }
+        return turned, (lanes, count, known)
+
+    @abstractmethod
+    def compute(self, readings: Delivered, step: int, memory: Any) -> tuple[Outputs, Any]:
+        """Return what it writes, `[..., L]` or queries, and its memory, which begins as `None`."""
 
 
 @dataclass(frozen=True)

@@ -2,15 +2,11 @@
 
 from importlib.resources import files
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from pydantic import JsonValue
 
 from faultpath.plugin.system import UserError
-from faultpath.plugin.training import Card, fill
-
-if TYPE_CHECKING:
-    from torch import nn
+from faultpath.plugin.training import Card
 
 FORMAT = "faultpath-model/1"
 
@@ -53,12 +49,3 @@ def checkpoint_path(name: str, seed: int) -> Path:
             f"`faultpath train quadrotor {name} --seed {seed} --ship` makes it."
         )
     return path
-
-
-def load_checkpoint(module: "nn.Module", path: Path) -> ModelCard:
-    """Fill a module with the weights of a file and return their card.
-
-    Raises `UserError` when the file is missing, differs from what its card describes, or belongs
-    to another architecture.
-    """
-    return fill(module, path, ModelCard)

@@ -3,13 +3,15 @@
 A new option is one field of `QuadrotorChoices`: flags, help and messages follow from it.
 """
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from faultpath.faults import Delay, Fault, Noise, Rotate, Scale, Sequence
-from faultpath.plugin.system import UserError
+from faultpath.plugin.system import Frozen, UserError
 from faultpath.system import Offered
 
 
@@ -57,28 +59,52 @@ class DeviceName(StrEnum):
     CUDA = "cuda"
 
 
-PREDICTORS = (
-    "dki",
-    "dki-drag",
-    "true-parameter",
-    "wm-a",
-    "wm-a+dcc",
-    "wm-u",
-    "wm-u+dcc",
-    "wm-a-wind",
-    "wm-a-nowind",
-)
-"""The names in `models.PREDICTORS`, which knows how to load each."""
+PREDICTORS: Mapping[str, str] = {
+    "dki": "physics without drag",
+    "dki-drag": "physics with nominal drag",
+    "true-parameter": "the simulator's physics and parameters",
+    "wm-a": "physics with a learned correction",
+    "wm-a+dcc": "physics with a learned correction, trained with errors of mass and thrust",
+    "wm-u": "a learned model without physics",
+    "wm-u+dcc": "a learned model without physics, trained with errors of mass and thrust",
+    "wm-a-wind": "physics with a learned correction and a wind input",
+    "wm-a-nowind": "physics with a learned correction, trained in wind that it is not told",
+}
+"""The shipped predictors, in words; `models` builds them."""
+
+INERTIAL = "dob-inertial"
+"""The one that reads a raw sensor: a variant only with a shipped filter, which reads them too."""
+_GRU = "a network that reads recent motion"
+RECONSTRUCTIONS: Mapping[str, str] = {
+    "dob": "the acceleration that mass, thrust and drag do not explain",
+    INERTIAL: "the acceleration that mass, thrust and drag do not explain, by the accelerometer",
+    "gru": f"{_GRU}, mass and thrust scale",
+    "gru+dcc": f"{_GRU}, mass and thrust scale, and was trained with errors of both",
+    "gru+state": f"{_GRU}, mass and thrust scale, and was trained with errors of motion",
+    "gru-withheld": f"{_GRU}, and neither mass nor thrust scale",
+    "gru-trajectory": f"{_GRU} alone, trained on flights of the planner",
+}
+"""The shipped wind reconstructions, in words; `models` builds them."""
 
 
-FILTERS = ("eskf", "eskf-no-bias", "eskf-cautious")
-"""The names in `estimators.FILTERS`, which knows how each is tuned."""
+@dataclass(frozen=True)
+class Tuning:
+    """How a shipped filter is tuned; see `estimators.kalman.Trust`."""
+
+    description: str
+    biases: bool = True
+    doubt: float = 1.0
 
 
-class QuadrotorChoices(BaseModel):
+FILTERS: Mapping[str, Tuning] = {
+    "eskf": Tuning("a Kalman filter that estimates the biases of its inertial sensors"),
+    "eskf-no-bias": Tuning("a Kalman filter that takes its inertial sensors for unbiased", False),
+    "eskf-cautious": Tuning("a Kalman filter that takes fixes for three times as noisy", doubt=3.0),
+}
+
+
+class QuadrotorChoices(Frozen):
     """One configuration of the quadrotor, as far as a user chooses it."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     wind: Annotated[Wind, "Wind level."] = Wind.L0
     environment: Annotated[Environment, "What is flown through."] = Environment.OBSTACLES
@@ -138,12 +164,12 @@ class QuadrotorChoices(BaseModel):
         """
         slots = (self.predictor, self.estimator, self.planner, self.plant)
         named = [*self.bring.split(","), *(name for name in slots if ":" in name)]
-        return tuple(dict.fromkeys(_own(name.strip()) for name in named if name.strip()))
-
-
-def _own(name: str) -> str:
-    head, _, rest = name.partition("/")
-    return rest if head in PREDICTORS else name
+        parts = (name.strip().partition("/") for name in named if name.strip())
+        return tuple(
+            dict.fromkeys(
+                rest if head in PREDICTORS else head + by + rest for head, by, rest in parts
+            )
+        )
 
 
 STATE_NOISE_STD = {"position": 0.02, "velocity": 0.05, "attitude": 0.01, "body_rate": 0.05}

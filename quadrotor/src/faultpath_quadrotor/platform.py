@@ -6,8 +6,7 @@ Chosen as the one whose baselines are nearest the paper's; `docs/design/platform
 import hashlib
 import json
 
-from pydantic import BaseModel, ConfigDict
-
+from faultpath.plugin.system import Frozen
 from faultpath_quadrotor.perception import PerceptionSettings, camera
 from faultpath_quadrotor.planners import CostWeights, SamplerSettings
 from faultpath_quadrotor.plant.wind import Winds
@@ -15,10 +14,8 @@ from faultpath_quadrotor.scenes.scene import Scene
 from faultpath_quadrotor.vehicle import Positive, Range, VehicleRanges
 
 
-class ControllerSettings(BaseModel):
+class ControllerSettings(Frozen):
     """Ranges from which each episode, or each of its waypoints, draws uniformly."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     arena_m: tuple[Range, Range, Range] = ((-4.5, 4.5), (-3.0, 3.0), (0.0, 3.0))
     """Box of the waypoints and the starts, the size of the scenes' arenas."""
@@ -41,14 +38,12 @@ class ControllerSettings(BaseModel):
     """How much of drag and wind the controller makes up for in advance."""
 
 
-class PerturbationSettings(BaseModel):
+class PerturbationSettings(Frozen):
     """Ranges of the perturbations; what an episode gets of them is drawn for it.
 
     Spread and correlation are those of the planner's candidates (`planner.SamplerSettings`): a
     predictor is asked about such commands. The rest is derived (`docs/design/learning.md`).
     """
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     thrust_sigma: float = 0.22
     """Largest standard deviation of the thrust, as a fraction of the hover thrust."""
@@ -73,10 +68,8 @@ class PerturbationSettings(BaseModel):
     hold_steps: tuple[int, int] = (2, 8)
 
 
-class FlightSettings(BaseModel):
+class FlightSettings(Frozen):
     """Everything that decides an episode beside its seed, its pool and the vehicle's ranges."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     controller: ControllerSettings = ControllerSettings()
     perturbation: PerturbationSettings = PerturbationSettings()
@@ -95,11 +88,7 @@ CLEARANCE = "clearance"
 TRAJECTORY = "gru-trajectory"
 
 
-class _Frozen(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-
-class PlannerSettings(_Frozen):
+class PlannerSettings(Frozen):
     """Everything of the planner that the platform decides."""
 
     sampler: SamplerSettings = SamplerSettings()
@@ -118,7 +107,7 @@ _DATA = {"drag_kgps", "ranges", "collection"}
 """Fields that decide the data that models are fitted on, beside the winds."""
 
 
-class Platform(_Frozen):
+class Platform(Frozen):
     """Vehicle, winds, planner, perception and training flights."""
 
     planner: PlannerSettings = PlannerSettings()

@@ -6,7 +6,9 @@ rows 1-3 the body-rate command in rad/s (paper, Section "Control Architecture").
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields
+from typing import Any, Self, cast
 
 import torch
 from torch import Tensor
@@ -18,8 +20,27 @@ LANE_MULTIPLE = 32
 apart from the rest, so only whole groups give a scene the same bits in every batch."""
 
 
+class Batched:
+    """A dataclass of tensors, or of other such, with the batch axes last."""
+
+    def map(self, change: Callable[[Tensor], Tensor]) -> Self:
+        """Return it with every tensor changed."""
+        parts: Any = ((field.name, getattr(self, field.name)) for field in fields(cast(Any, self)))
+        return type(self)(
+            **{n: change(x) if isinstance(x, Tensor) else x.map(change) for n, x in parts}
+        )
+
+    def take(self, index: Tensor | Sequence[int] | slice) -> Self:
+        """Return the lanes that an index picks from the last batch axis."""
+        return self.map(lambda x: x[..., index])
+
+    def to(self, target: torch.dtype | torch.device | str) -> Self:
+        """Return it in another dtype or on another device."""
+        return self.map(lambda x: x.to(target))
+
+
 @dataclass(frozen=True)
-class State:
+class State(Batched):
     """Where a vehicle is and how it moves; `*b` is any batch shape, the same for all four."""
 
     position: Tensor
@@ -36,29 +57,16 @@ class State:
         """The batch shape `*b`."""
         return self.position.shape[1:]
 
+    @property
+    def parts(self) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+        """All four, in their order."""
+        return self.position, self.velocity, self.rotation, self.rate
+
     @classmethod
     def hover(cls, position: Tensor, yaw: Tensor) -> State:
         """Return vehicles at rest and level at `position` [3, *b] m with heading `yaw` [*b] rad."""
         still = torch.zeros_like(position)
         return cls(position, still, so3.from_yaw(yaw), still.clone())
-
-    def take(self, index: Tensor) -> State:
-        """Return the lanes that `index` (long or bool, [n]) picks from the last batch axis."""
-        return State(
-            self.position[..., index],
-            self.velocity[..., index],
-            self.rotation[..., index],
-            self.rate[..., index],
-        )
-
-    def to(self, target: torch.dtype | torch.device | str) -> State:
-        """Return the state in another dtype or on another device."""
-        return State(
-            self.position.to(target),
-            self.velocity.to(target),
-            self.rotation.to(target),
-            self.rate.to(target),
-        )
 
 
 def padded_lanes(count: int) -> Tensor:

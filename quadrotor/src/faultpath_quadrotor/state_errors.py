@@ -81,7 +81,7 @@ def _errors(
     for step, values in enumerate(steps):
         readings = {name: values[name].movedim(0, -1).contiguous() for name in SENSORS}
         past = filter_.begun(readings) if past is None else filter_.taken(past, readings, step)
-        for channel, clean in filter_.said(past, readings).items():
+        for channel, clean in filter_.estimates(past, readings).items():
             expected, estimate = clean.movedim(-1, 0), values[channel]
             errors[channel].append(
                 expected.transpose(1, 2) @ estimate if channel in TURNING else estimate - expected

@@ -24,13 +24,20 @@ from faultpath.system import (
 )
 from faultpath_quadrotor import native
 from faultpath_quadrotor.checkpoint import shipped_folder
-from faultpath_quadrotor.choices import ClearanceName, DeviceName, calibration, mount, noisy_state
+from faultpath_quadrotor.choices import (
+    INERTIAL,
+    ClearanceName,
+    DeviceName,
+    calibration,
+    mount,
+    noisy_state,
+)
 from faultpath_quadrotor.device import CPU, arithmetic, describe
 from faultpath_quadrotor.estimators import Estimator, filtering
 from faultpath_quadrotor.estimators.protocol import with_estimators
 from faultpath_quadrotor.estimators.sensors import SENSORS, sensors
 from faultpath_quadrotor.interface import quadrotor_interface
-from faultpath_quadrotor.models import INERTIAL, clearance_model, reconstruction
+from faultpath_quadrotor.models import clearance_model, reconstruction
 from faultpath_quadrotor.options import QuadrotorOptions
 from faultpath_quadrotor.perception import DepthClearance, DepthRenderer
 from faultpath_quadrotor.perception.module import Perception

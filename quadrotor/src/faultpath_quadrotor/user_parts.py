@@ -32,8 +32,10 @@ from faultpath_quadrotor.interface import quadrotor_interface
 from faultpath_quadrotor.planners import Planner, SamplerSettings, Scored
 from faultpath_quadrotor.plant import Plant
 from faultpath_quadrotor.predictors import KinematicIntegrator, Predictor
+from faultpath_quadrotor.predictors.history import STEPS as HISTORY
 from faultpath_quadrotor.predictors.predictor_inputs import check_places, history, predictor_inputs
 from faultpath_quadrotor.predictors.rollout import rollout
+from faultpath_quadrotor.predictors.true_parameter import CODE
 from faultpath_quadrotor.reconstruction import Reconstruction
 from faultpath_quadrotor.state import LANE_MULTIPLE, State
 from faultpath_quadrotor.vehicle import GRAVITY_MPS2
@@ -41,7 +43,7 @@ from faultpath_quadrotor.vehicle import GRAVITY_MPS2
 Part = Predictor | Reconstruction | Planner | Estimator | type[Plant]
 KINDS = (Predictor, Reconstruction, Planner, Estimator)
 
-_STEPS, _CANDIDATES, _CODE, _PAST = 3, 8, 32, 12
+_STEPS, _CANDIDATES = 3, 8
 _READINGS: Mapping[str, Tensor] = {
     "mass": torch.tensor(1.0),
     "thrust_scale": torch.tensor(1.0),
@@ -101,19 +103,9 @@ class UserPart:
                 )
             if seed not in self._tried:
                 with torch.inference_mode():
-                    _explaining(lambda: self._try(part))
+                    _explaining(lambda: _try(self.name, part, self._settings))
                 self._tried.add(seed)
         return part
-
-    def _try(self, part: Any) -> None:
-        """Let a part do on a made-up moment what it will do in flight; `SystemMistake` for what it
-        returns in another shape than the loop takes."""
-        if isinstance(part, Predictor):
-            _try_predictor(self.name, part)
-        elif isinstance(part, Reconstruction):
-            _try_reconstruction(self.name, part)
-        elif isinstance(part, Planner):
-            _try_planner(self.name, part, self._settings)
 
 
 def load_user_parts(names: Sequence[str], settings: SamplerSettings) -> dict[str, UserPart]:
@@ -200,6 +192,17 @@ def _check_ports(name: str, reads: Collection[tuple[str, str]]) -> None:
             )
 
 
+def _try(name: str, part: Any, settings: SamplerSettings) -> None:
+    """Let a part do on a made-up moment what it will do in flight; `SystemMistake` for what it
+    returns in another shape than the loop takes."""
+    if isinstance(part, Predictor):
+        _try_predictor(name, part)
+    elif isinstance(part, Reconstruction):
+        _try_reconstruction(name, part)
+    elif isinstance(part, Planner):
+        _try_planner(name, part, settings)
+
+
 def _try_predictor(name: str, predictor: Predictor) -> None:
     lanes = 2
     code: Any = None
@@ -211,11 +214,11 @@ def _try_predictor(name: str, predictor: Predictor) -> None:
         value = now(channel, place)
         if channel in ("mass", "thrust_scale"):
             return value
-        return value[..., None, :].expand(*value.shape[:-1], _PAST, lanes).contiguous()
+        return value[..., None, :].expand(*value.shape[:-1], HISTORY, lanes).contiguous()
 
     if "history" in predictor.reads:
         code = predictor.encode(history(predictor.reads, past))
-        _check(name, "encode()", code, _CODE, lanes)
+        _check(name, "encode()", code, CODE, lanes)
     inputs = predictor_inputs(predictor.reads, now)
     memory, state = predictor.begin(inputs), inputs.state
     hover = _spread(_READINGS["action"], lanes, _CANDIDATES)
@@ -227,14 +230,10 @@ def _try_predictor(name: str, predictor: Predictor) -> None:
                 f"{name}: step() returned a {kind}: it returns a State and the memory"
             )
         state, memory = answer
-        for part, axes in (
-            ("position", [3]),
-            ("velocity", [3]),
-            ("rotation", [3, 3]),
-            ("rate", [3]),
-        ):
+        for part, value in vars(state).items():
+            axes = (3, 3) if part == "rotation" else (3,)
             what = f"{part} of the state that step() returns"
-            _check(name, what, getattr(state, part), *axes, lanes, _CANDIDATES)
+            _check(name, what, value, *axes, lanes, _CANDIDATES)
 
 
 def _try_reconstruction(name: str, reconstruction: Reconstruction) -> None:

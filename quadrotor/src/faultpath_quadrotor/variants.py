@@ -9,23 +9,21 @@ makes a variant with the predictor of the options.
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import torch
 
 from faultpath.loop import Module
 from faultpath.system import Wiring
-from faultpath_quadrotor.choices import ClearanceName
-from faultpath_quadrotor.device import CPU
-from faultpath_quadrotor.estimators import FILTERS, Estimator, ExactEstimator, Tuned, filtering
-from faultpath_quadrotor.models import (
+from faultpath_quadrotor.choices import (
+    FILTERS,
     INERTIAL,
     PREDICTORS,
     RECONSTRUCTIONS,
-    NamedModel,
-    predictor,
-    reconstruction,
+    ClearanceName,
 )
+from faultpath_quadrotor.device import CPU
+from faultpath_quadrotor.estimators import Estimator, ExactEstimator, filtering
+from faultpath_quadrotor.models import predictor, reconstruction
 from faultpath_quadrotor.options import QuadrotorOptions
 from faultpath_quadrotor.planners import Planner
 from faultpath_quadrotor.predictors import Predictor
@@ -105,21 +103,19 @@ class Setup:
             "clearance": "estimated_clearance" if estimated else "true_clearance",
             "wind": "zero_wind",
         }
-        words = f"Prediction: {self._description(self.predictor, PREDICTORS)}"
+        filters = {name: tuning.description for name, tuning in FILTERS.items()}
+        own = {name: part.description for name, part in self.user_parts.items()}
+        known = {**PREDICTORS, **RECONSTRUCTIONS, **filters, **own}
+        words = f"Prediction: {known[self.predictor]}"
         if self.wind is not None:
-            bindings["wind"], source = _FIXED.get(self.wind) or (
-                "reconstructed_wind",
-                self._description(self.wind, RECONSTRUCTIONS),
-            )
+            reconstructed = ("reconstructed_wind", known.get(self.wind, ""))
+            bindings["wind"], source = _FIXED.get(self.wind, reconstructed)
             words = f"{words}. Wind: {source}"
         if self.planner is not None:
-            words = f"{words}. Planning: {self.user_parts[self.planner].description}"
+            words = f"{words}. Planning: {known[self.planner]}"
         if self.estimator is not None:
-            words = f"{words}. Estimating: {self._description(self.estimator, FILTERS)}"
+            words = f"{words}. Estimating: {known[self.estimator]}"
         return Wiring(f"{words}.", bindings)
-
-    def _description(self, name: str, shipped: Mapping[str, NamedModel[Any] | Tuned]) -> str:
-        return (self.user_parts.get(name) or shipped[name]).description
 
 
 def setups(

@@ -11,7 +11,9 @@ from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
+
+from faultpath.plugin.system import Frozen
 
 GRAVITY_MPS2 = 9.81
 CONTROL_RATE_HZ = 20  # [P]
@@ -40,10 +42,8 @@ Range = tuple[float, float]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
 
-class VehicleParameters(BaseModel):
+class VehicleParameters(Frozen, allow_inf_nan=False):
     """One vehicle as plain numbers, fit for a JSON file; a batch of them is a `Vehicle`."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     mass_kg: Positive = NOMINAL_MASS_KG
     thrust_scale: Positive = 1.0

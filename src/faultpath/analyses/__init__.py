@@ -1,8 +1,9 @@
 """The decision: effects, break-even frequency, verdict."""
 
+from faultpath.analyses.facts import ComparisonFacts
 from faultpath.analyses.model import Condition
-from faultpath.analyses.question import Question
 from faultpath.analyses.record import DecisionRecord
 from faultpath.run.provenance import RunProvenance
+from faultpath.run.question import AuditQuestion
 
-__all__ = ["Condition", "DecisionRecord", "Question", "RunProvenance"]
+__all__ = ["AuditQuestion", "ComparisonFacts", "Condition", "DecisionRecord", "RunProvenance"]

@@ -5,10 +5,9 @@ from collections.abc import Generator
 from dataclasses import dataclass
 from typing import Any, ClassVar, Generic, TypeAlias, TypeVar
 
-from faultpath.analyses.question import Resolved
 from faultpath.run import Deliveries, Study, Trials
 from faultpath.run.execution.state import Stop
-from faultpath.run.question import Running, ScanQuestion
+from faultpath.run.question import Request
 from faultpath.system.system import System
 
 Items = TypeVar("Items")
@@ -26,7 +25,7 @@ class Round:
     notice: str = ""
     """Sentence to be shown before the round."""
     stop: Stop | None = None
-    """Asked at each look of a sequential study."""
+    """Asked at each analysis of a sequential study."""
 
 
 Rounds: TypeAlias = Generator[Round, Trials, Items]
@@ -40,8 +39,7 @@ class Analysis(ABC, Generic[Items]):
     noun: ClassVar[str] = ""
     """Plural of that which rounds add; empty for an analysis of one round."""
 
-    request: Running | ScanQuestion
-    question: Resolved
+    question: Request
     system: System
     named: tuple[str, ...]
     """Parts of the name of its folder; system options, scenes and seeds follow."""

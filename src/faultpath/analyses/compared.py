@@ -17,7 +17,7 @@ a trial has no outcome."""
 
 
 @dataclass(frozen=True)
-class ComparedTrials:
+class PairedTrials:
     """Trials that are compared, condition by condition, and conditions that are not."""
 
     pairs: Mapping[str, Pairs]
@@ -29,9 +29,7 @@ class ComparedTrials:
     mismatches: tuple[Mismatch, ...]
 
 
-def compared(
-    repair: str, baseline: str, conditions: Iterable[str], trials: Trials
-) -> ComparedTrials:
+def compared(repair: str, baseline: str, conditions: Iterable[str], trials: Trials) -> PairedTrials:
     """Return the trials of two variants that are compared; `UserError` when no pair is left.
 
     Each condition keeps its own scenes and seeds: what failed elsewhere costs it nothing. Where all
@@ -52,7 +50,7 @@ def compared(
     columns = np.concatenate([part for condition in left for part in success[condition]])
     alike = np.array_equal(columns, np.repeat(columns[:, :1], columns.shape[1], 1), equal_nan=True)
     seeds = slice(1) if alike else slice(None)
-    return ComparedTrials(
+    return PairedTrials(
         pairs={condition: pairs[condition] for condition in left},
         success={
             condition: (success[condition][0][:, seeds], success[condition][1][:, seeds])

@@ -5,11 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from faultpath.analyses.compared import ComparedTrials
+from faultpath.analyses.compared import PairedTrials
 from faultpath.analyses.contrasts import change_name, default_primary, effect_name
 from faultpath.analyses.descriptive import cells_of, percent, secondary, untested_conditions
 from faultpath.analyses.effects import Change, Effect, Missing
-from faultpath.analyses.family import Family, family_of
+from faultpath.analyses.facts import ComparisonFacts, Question
+from faultpath.analyses.family import TestedContrasts, family_of
 from faultpath.analyses.model import (
     AS_RUN,
     CORRECT,
@@ -17,8 +18,9 @@ from faultpath.analyses.model import (
     Condition,
     ConditionBreakEven,
     Invalid,
+    Share,
+    Testing,
 )
-from faultpath.analyses.question import Question
 from faultpath.analyses.record import DecisionRecord
 from faultpath.analyses.sentences import phrases
 from faultpath.analyses.shares import between
@@ -33,6 +35,7 @@ from faultpath.system.outcome import Status
 
 def decide(
     question: Question,
+    facts: ComparisonFacts,
     conditions: Sequence[Condition],
     trials: Trials,
     findings: Sequence[str] = (),
@@ -47,35 +50,36 @@ def decide(
     condition that the audit does not have, and where newly trained models are asked for and too few
     trainings differ.
     """
-    question = question.model_copy(
-        update={"primary": primary_condition(question.primary, conditions)}
-    )
+    primary = primary_condition(question.primary or "", conditions)
+    facts = facts.model_copy(update={"primary": primary})
     cells = cells_of(question, conditions, trials)
     # Whether a fault acted is told by receipts, and other tools' results have none.
-    untested = () if question.judged else untested_conditions(conditions, cells)
-    comparison, family = family_of(question, conditions, trials, untested)
+    untested = () if facts.judged else untested_conditions(conditions, cells)
+    comparison, family = family_of(question, facts, conditions, trials, untested)
     invalid: Invalid | None = "unpaired" if comparison.mismatches else None
     if not repeats:
         invalid = "unrepeatable"
     if invalid:
         family = family.without_claims()
+    models = question.generalise == "models"
     effects = {
-        condition: _effect(question, condition, comparison, family)
+        condition: _effect(facts, condition, comparison, family, models)
         for condition in comparison.success
     }
 
-    def even(ends: Sequence[tuple[str, str]], beta: bool) -> tuple[ConditionBreakEven, ...]:
+    def even(ends: Sequence[tuple[str, str]], over: Share) -> tuple[ConditionBreakEven, ...]:
         pairs = ((effects[none], effects[every]) for none, every in ends)
-        results = (between(*pair, comparison, family, beta) for pair in pairs)
+        results = (between(*pair, comparison, family, over) for pair in pairs)
         return tuple(result for result in results if result)
 
     faulted = [condition for condition in effects if condition not in (CORRECT, AS_RUN, *untested)]
     from_none = [(CORRECT, condition) for condition in faulted] if CORRECT in effects else []
     from_one = [(condition, SHARED) for condition in family.changes]
-    state = stopped(question, family, trials)
+    state = stopped(question, facts, family, trials)
     first = next(iter(family.effects.values()))
     record = DecisionRecord(
         question=question,
+        facts=facts,
         conditions=tuple(
             condition.model_copy(update={"acted": condition.name not in untested})
             for condition in conditions
@@ -84,15 +88,17 @@ def decide(
         effects=tuple(effects.values()),
         changes=tuple(_change(condition, family) for condition in family.changes),
         secondary=tuple(
-            secondary(condition, comparison.pairs[condition], question) for condition in effects
+            secondary(condition, comparison.pairs[condition], question, facts)
+            for condition in effects
         ),
-        break_even=even(from_none, beta=False),
-        break_even_beta=even(from_one, beta=True),
+        break_evens=(*even(from_none, "frequency"), *even(from_one, "beta")),
         scenes=max(effect.scenes for effect in effects.values()),
         invalid=invalid,
-        scenes_needed=family.scenes_needed,
-        hypotheses=family.hypotheses,
-        intervals=first.estimate().method,
+        testing=Testing(
+            hypotheses=family.hypotheses,
+            scenes_needed=family.scenes_needed,
+            intervals=first.estimate().method,
+        ),
         stopped=state and state.model_copy(update={"small": ()} if invalid else {}),
     )
     noted = (
@@ -124,7 +130,11 @@ def primary_condition(named: str, conditions: Sequence[Condition]) -> str:
 
 
 def _effect(
-    question: Question, condition: str, comparison: ComparedTrials, family: Family
+    facts: ComparisonFacts,
+    condition: str,
+    comparison: PairedTrials,
+    family: TestedContrasts,
+    models: bool,
 ) -> Effect:
     repair, baseline = comparison.success[condition]
     effect, pairs = family.effects[condition], comparison.pairs[condition]
@@ -136,11 +146,13 @@ def _effect(
     void, missing = int(pairs.void.sum()), None
     if condition in family.fills:
         against, favour = family.fills[condition]
-        ours, theirs = (int(failed.sum()) for failed in pairs.ended(Status.FAILED))
+        repair_failed, baseline_failed = (
+            int(failed.sum()) for failed in pairs.ended(Status.FAILED)
+        )
         missing = Missing(
             void=void,
-            repair=ours,
-            baseline=theirs,
+            repair=repair_failed,
+            baseline=baseline_failed,
             against_pp=against.value,
             favour_pp=favour.value,
             uneven=condition in family.uneven,
@@ -152,7 +164,7 @@ def _effect(
     # None is known for newly trained models, whose spread a few seeds do not give, and of an audit
     # that stops where it has decided.
     level, least = effect.test.critical_p, None
-    if level and question.generalise == "scenes" and question.stop is None:
+    if level and not models and facts.order is None:
         least = detectable(effect.pairs, graded=True, alpha=level, on_top=True)
     return Effect(
         condition=condition,
@@ -165,7 +177,7 @@ def _effect(
     )
 
 
-def _change(condition: str, family: Family) -> Change:
+def _change(condition: str, family: TestedContrasts) -> Change:
     contrast = family.changes[condition]
     return Change(
         isolated=condition,

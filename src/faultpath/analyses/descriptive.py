@@ -6,8 +6,8 @@ from functools import lru_cache
 import numpy as np
 
 from faultpath.analyses.effects import AtThreshold, Secondary
+from faultpath.analyses.facts import ComparisonFacts, Question
 from faultpath.analyses.model import CORRECT, Condition, VariantCounts
-from faultpath.analyses.question import Question
 from faultpath.run.pairing import Pairs
 from faultpath.run.trials import Bools, Trials
 from faultpath.stats.contrast import MIN_SCENES
@@ -15,7 +15,7 @@ from faultpath.stats.effects import mean_effect, median_effect, seed_sums, succe
 from faultpath.stats.estimate import Estimate
 from faultpath.stats.inputs import Floats
 from faultpath.stats.resamples import Resamples
-from faultpath.system.outcome import Status
+from faultpath.system.outcome import Metric, Status
 
 
 def percent(success: Floats) -> float:
@@ -68,13 +68,15 @@ def untested_conditions(
     )
 
 
-def secondary(condition: str, pairs: Pairs, question: Question) -> Secondary:
+def secondary(
+    condition: str, pairs: Pairs, question: Question, facts: ComparisonFacts
+) -> Secondary:
     """Return time and metrics under a condition, over the scenes of which every seed has both
     outcomes, for new scenes and the seeds run."""
     pairs = pairs.whole()
     if not pairs.scenes:
         return Secondary(condition=condition)
-    library, scenes = question.library_hash, len(pairs.scenes)
+    library, scenes = facts.library_hash, len(pairs.scenes)
     repair, baseline = pairs.ended(Status.SUCCESS)
     times = pairs.time_s
     joint = repair & baseline
@@ -82,10 +84,10 @@ def secondary(condition: str, pairs: Pairs, question: Question) -> Secondary:
     time_s = None
     if joint.any():
         time_s = median_effect(*times, joint, _resamples(library, scenes)).estimate()
-        time_s = _honest(time_s, "median", question)
+        time_s = _honest(time_s, "median", facts)
     metrics: dict[str, Estimate] = {}
     means, thresholds = None, list[AtThreshold]()
-    for name, metric in question.metrics.items():
+    for name, metric in facts.metrics.items():
         if (both := pairs.metric(name)) is None:
             continue
         full = np.asarray(np.isfinite(both[0] + both[1]).all(axis=1))
@@ -95,13 +97,13 @@ def secondary(condition: str, pairs: Pairs, question: Question) -> Secondary:
         new, old = (values[full] for values in both)
         drawn = _resamples(library, n_scenes)
         difference = mean_effect(new, old, drawn, metric.unit)
-        metrics[name] = _honest(difference.estimate(), "mean", question)
+        metrics[name] = _honest(difference.estimate(), "mean", facts)
         if name == question.metric:
             means = float(old.mean()), float(new.mean())
             crashed = [ended[full] for ended in pairs.ended(Status.CRASH)]
             thresholds = [
-                _at_threshold(at, (new, old), crashed, drawn, question)
-                for at in question.thresholds
+                _at_threshold(at, metric, (new, old), crashed, drawn, facts)
+                for at in sorted(set(question.thresholds))
             ]
     return Secondary(
         condition=condition,
@@ -118,10 +120,10 @@ def _resamples(label: str, scenes: int) -> Resamples:
     return Resamples.draw(label, scenes)
 
 
-def _honest(estimate: Estimate, what: str, question: Question) -> Estimate:
+def _honest(estimate: Estimate, what: str, facts: ComparisonFacts) -> Estimate:
     """Return an estimate without the interval that it cannot have: those of a sequential audit need
     a fixed number of scenes."""
-    if question.stop is not None:
+    if facts.order is not None:
         why = f"{what} of the scenes until the audit stopped: no interval"
     elif estimate.n_scenes < MIN_SCENES:
         why = f"{what} of {estimate.n_scenes} scenes, too few for an interval"
@@ -134,17 +136,18 @@ def _honest(estimate: Estimate, what: str, question: Question) -> Estimate:
 
 def _at_threshold(
     threshold: float,
+    of: Metric,
     values: Sequence[Floats],
     crashed: Sequence[Bools],
     resamples: Resamples,
-    question: Question,
+    facts: ComparisonFacts,
 ) -> AtThreshold:
-    less = question.metrics[question.metric].better == "less"
+    less = of.better == "less"
     new, old = (
         ~crash & (metric <= threshold if less else metric >= threshold)
         for metric, crash in zip(values, crashed, strict=True)
     )
-    sequential = question.stop is not None
+    sequential = facts.order is not None
     difference = success_effect(new, old, resamples, sequential=sequential, graded=True)
     return AtThreshold(
         threshold=threshold,

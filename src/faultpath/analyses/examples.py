@@ -3,12 +3,16 @@
 A scene with one seed shows who succeeded under each condition: its pattern. Patterns come first
 that show the most reversals, then those that show the most significant effects, less what they
 contradict, then those in which not everything ends alike, then those that more scenes have. Of
-each of the first six patterns the scene with the lowest index is shown; places left over are
-filled in the same order. They are examples, not a sample.
+each of the first six patterns the typical scene is shown: the one whose trials have parted at the
+median time. Trials that end differently have parted when the first of the two ends, which is all
+that is known of scenes of which no signals were recorded. Places left over are filled in the same
+order. They are examples, not a sample.
 """
 
+import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
+from statistics import median_low
 from typing import TypeAlias
 
 from faultpath.analyses.model import SHARED
@@ -17,18 +21,26 @@ from faultpath.analyses.record import DecisionRecord
 
 At: TypeAlias = tuple[str, int]
 """A scene and a seed."""
+Pattern: TypeAlias = tuple[tuple[str, PairKind], ...]
+"""Who succeeds, condition by condition."""
 
 _MOST = 6
 
 
-def choose(record: DecisionRecord, pairs: Sequence[Pair]) -> tuple[At, ...]:
-    """Return up to six scenes with their seeds by the rule at the top."""
+def choose(
+    record: DecisionRecord, pairs: Sequence[Pair], recorded: Collection[At] = ()
+) -> tuple[At, ...]:
+    """Return up to six scenes with their seeds by the rule at the top.
+
+    Of scenes that go alike those that a run has `recorded` come first: its examples stay.
+    """
     patterns, index = _patterns(pairs), {(pair.scene, pair.seed): pair.index for pair in pairs}
+    away = _away(pairs, patterns)
     counts = Counter(patterns.values())
     signs = {effect.condition: effect.sign for effect in record.effects if effect.leads}
     variants = {PairKind.REPAIR_ONLY: 1, PairKind.BASELINE_ONLY: -1}
 
-    def order(at: At) -> tuple[int, ...]:
+    def order(at: At) -> tuple[float, ...]:
         pattern = patterns[at]
         shown = {
             condition: signs.get(condition, 0) * variants.get(kind, 0)
@@ -39,7 +51,8 @@ def choose(record: DecisionRecord, pairs: Sequence[Pair]) -> tuple[At, ...]:
             for change in record.changes
         )
         alike = len({kind for _, kind in pattern}) == 1 and pattern[0][1] not in variants
-        return -reversals, -sum(shown.values()), alike, -counts[pattern], index[at], at[1]
+        shows = (-reversals, -sum(shown.values()), alike, -counts[pattern])
+        return *shows, at not in recorded, away[at], index[at], at[1]
 
     ranked = sorted(patterns, key=order)
     chosen: list[At] = []
@@ -53,22 +66,45 @@ def choose(record: DecisionRecord, pairs: Sequence[Pair]) -> tuple[At, ...]:
 
 
 def captions(pairs: Sequence[Pair], sampled: bool = False) -> dict[At, str]:
-    """Say of each scene and seed in how many the same versions succeed under every condition."""
+    """Say of each scene and seed in how many the same versions succeed under every condition, and
+    whether it is typical of them."""
     patterns = _patterns(pairs)
     scenes, seeds = (
         (len(set(values)) for values in zip(*patterns, strict=True)) if patterns else (0, 0)
     )
     noun = "sampled scenes" if sampled else "scenes"
     of = f"{scenes} {noun}" if seeds < 2 else f"{len(patterns)} ({scenes} {noun}, {seeds} seeds)"
-    like = Counter(patterns.values())
+    like, away = Counter(patterns.values()), _away(pairs, patterns)
+    varied = {patterns[at] for at, seconds in away.items() if seconds}
+    typical = " It is a typical one: its trials end apart at the median time of these."
     return {
         at: f"{like[pattern]} of {of} {'goes' if like[pattern] == 1 else 'go'} like this one: "
         "the same versions succeed under each condition."
+        f"{typical if pattern in varied and not away[at] else ''}"
         for at, pattern in patterns.items()
     }
 
 
-def _patterns(pairs: Sequence[Pair]) -> dict[At, tuple[tuple[str, PairKind], ...]]:
+def _away(pairs: Sequence[Pair], patterns: Mapping[At, Pattern]) -> dict[At, float]:
+    """Return how far from the median of its pattern the trials of a scene have parted, s."""
+    groups = by_scene(pairs)
+    parted = {at: _parted_s(groups[at]) for at in patterns}
+    times: dict[Pattern, list[float]] = {}
+    for at, pattern in patterns.items():
+        times.setdefault(pattern, []).append(parted[at])
+    medians = {pattern: median_low(of) for pattern, of in times.items()}
+    return {at: abs(parted[at] - medians[pattern]) for at, pattern in patterns.items()}
+
+
+def _parted_s(pairs: Mapping[str, Pair]) -> float:
+    """Return when the pairs of a scene that end differently have parted, summed; of all pairs where
+    none does. Other tools need not say times: these count as none."""
+    apart = [pair for pair in pairs.values() if pair.sign] or list(pairs.values())
+    times = (min(trial.time_s for trial in (pair.baseline, pair.repair) if trial) for pair in apart)
+    return sum(time for time in times if not math.isnan(time))
+
+
+def _patterns(pairs: Sequence[Pair]) -> dict[At, Pattern]:
     """Return who succeeded, condition by condition, in every scene and seed without a void pair."""
     return {
         at: tuple((condition, pair.kind) for condition, pair in group.items())

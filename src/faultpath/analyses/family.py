@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from faultpath.analyses.compared import ComparedTrials, Outcomes, compared
+from faultpath.analyses.compared import Outcomes, PairedTrials, compared
 from faultpath.analyses.contrasts import (
     Measure,
     alpha_shares,
@@ -15,6 +15,7 @@ from faultpath.analyses.contrasts import (
     effect_name,
     isolated,
 )
+from faultpath.analyses.facts import ComparisonFacts, Question
 from faultpath.analyses.missing import (
     Decide,
     any_missing,
@@ -24,7 +25,6 @@ from faultpath.analyses.missing import (
     uneven,
 )
 from faultpath.analyses.model import SHARED, Condition
-from faultpath.analyses.question import Question
 from faultpath.core.errors import UserError
 from faultpath.run.question import FEWEST_TRAININGS
 from faultpath.run.trials import Trials
@@ -36,7 +36,7 @@ from faultpath.stats.power import fewest_scenes
 
 
 @dataclass(frozen=True)
-class Family:
+class TestedContrasts:
     """Every contrast of an audit with its decision."""
 
     effects: Mapping[str, Contrast]
@@ -58,7 +58,7 @@ class Family:
     """By condition that is unsettled: how many failed trials of the repair and of the baseline have
     to run to settle it, if they come out as the others did."""
 
-    def without_claims(self) -> "Family":
+    def without_claims(self) -> "TestedContrasts":
         """Return the family of trials on which nothing can rest: no contrast is decided."""
 
         def undecided(contrasts: Mapping[str, Contrast]) -> dict[str, Contrast]:
@@ -75,8 +75,12 @@ class Family:
 
 
 def family_of(
-    question: Question, conditions: Sequence[Condition], trials: Trials, untested: Sequence[str]
-) -> tuple[ComparedTrials, Family]:
+    question: Question,
+    facts: ComparisonFacts,
+    conditions: Sequence[Condition],
+    trials: Trials,
+    untested: Sequence[str],
+) -> tuple[PairedTrials, TestedContrasts]:
     """Return the trials of an audit that are compared, and what is decided of them.
 
     `UserError` when no pair is left, and where newly trained models are asked for and too few
@@ -90,16 +94,16 @@ def family_of(
         trainings = len({column.tobytes() for column in columns.T[ran]})
         if trainings < FEWEST_TRAININGS:
             raise UserError(
-                f"only {trainings} of the {len(question.seeds)} trainings ran under each condition "
+                f"only {trainings} of the {len(facts.seeds)} trainings ran under each condition "
                 f"and gave different outcomes, and what holds for newly trained models needs "
                 f"{FEWEST_TRAININGS}: leave --generalise models out."
             )
     family = decide_conditions(
         comparison.success,
-        primary=question.primary,
+        primary=facts.primary,
         models=question.generalise == "models",
         untested=untested,
-        shares=alpha_shares(names, question.primary) if question.stop is not None else None,
+        shares=alpha_shares(names, facts.primary) if facts.order is not None else None,
     )
     return comparison, family
 
@@ -112,7 +116,7 @@ def decide_conditions(
     untested: Collection[str] = (),
     alpha: float = ALPHA,
     shares: Mapping[str, float] | None = None,
-) -> Family:
+) -> TestedContrasts:
     """Return what is decided of all conditions, from successes `[scenes, seeds]` alone, not a
     number where a trial has no outcome.
 
@@ -170,7 +174,7 @@ def decide_conditions(
     needed = fewest_scenes(alpha * max(weights.values()) / ordered_sum(weights.values()))
     if shares is not None:
         needed = betting.fewest_scenes(alpha * max(shares.values()))
-    return Family(
+    return TestedContrasts(
         effects=effects,
         changes=changes,
         turns={

@@ -21,14 +21,14 @@ class Answer:
     """Yes or no, and what it rests on: true and false as a bool, and read in a failed assert."""
 
     yes: bool
-    said: str
+    reason: str
 
     def __bool__(self) -> bool:
         return self.yes
 
     def __repr__(self) -> str:
         """Return the answer and what it rests on."""
-        return f"{'yes' if self.yes else 'no'}: {self.said}"
+        return f"{'yes' if self.yes else 'no'}: {self.reason}"
 
 
 def found(record: DecisionRecord, what: str) -> Answer:
@@ -52,10 +52,10 @@ def found(record: DecisionRecord, what: str) -> Answer:
             ahead = f"{record.question.baseline} succeeds more often."
             return Answer(True, f"{capital(places(behind))}, {ahead}")
         case "undecided":
-            primary = record.question.primary
+            primary = record.facts.primary
             main = next((effect for effect in record.effects if effect.condition == primary), None)
-            settled = main is not None and (main.sign != 0 or record.is_small(main))
-            return Answer(not settled, f"{capital(where(primary))}: {in_short(record, main)}.")
+            conclusive = main is not None and (main.sign != 0 or record.is_small(main))
+            return Answer(not conclusive, f"{capital(where(primary))}: {in_short(record, main)}.")
         case "void":
             void = sum(effect.void for effect in record.effects)
             lost = [condition.name for condition in record.conditions]

@@ -1,5 +1,4 @@
-"""From trials that other tools ran to what an audit is decided from: question, conditions,
-trials."""
+"""From trials that other tools ran to what an audit is decided from: facts, conditions, trials."""
 
 import hashlib
 import json
@@ -8,18 +7,17 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from faultpath.analyses.decide import primary_condition
+from faultpath.analyses.facts import ComparisonFacts
 from faultpath.analyses.judging_table import Address, Key, table_of, units_of
 from faultpath.analyses.model import AS_RUN, CORRECT, SHARED, Condition
-from faultpath.analyses.question import JudgedTrials, Question, resolve
 from faultpath.analyses.sentences.wording import capital, counted, where
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
-from faultpath.run import SystemSpec, Trials
+from faultpath.run import Trials
 from faultpath.run.deliveries import unproven
 from faultpath.run.received.question import JudgeQuestion
 from faultpath.run.received.trial import NO_OUTCOME, Received
 from faultpath.run.store.tables import FIXED
-from faultpath.system.declared import Library
 from faultpath.system.outcome import Metric, Status
 
 _ONE = "one module"
@@ -28,16 +26,17 @@ _FIRST = {CORRECT: 0, SHARED: 2}
 
 
 @dataclass(frozen=True)
-class LaidOut:
+class PairedResults:
     """Arguments of `decide`."""
 
-    question: Question
+    question: JudgeQuestion
+    facts: ComparisonFacts
     conditions: tuple[Condition, ...]
     trials: Trials
     findings: tuple[str, ...]
 
 
-def pair_results(rows: Sequence[Received], request: JudgeQuestion) -> LaidOut:
+def pair_results(rows: Sequence[Received], request: JudgeQuestion) -> PairedResults:
     """Pair the trials of two variants by what names them: task, scene, seed and condition.
 
     What one variant has and the other lacks is a failed trial, so that its pair is void, and is
@@ -55,36 +54,34 @@ def pair_results(rows: Sequence[Received], request: JudgeQuestion) -> LaidOut:
     if request.cluster == "task" and not all(row.task for row in rows):
         raise UserError("not every trial names its task: give --column task=NAME.")
     received = _by_address(rows, names, request)
-    conditions = sorted(set(names.values()), key=lambda name: (_FIRST.get(name, 1), name))
-    _check_paired(received, conditions, request)
+    ordered = sorted(set(names.values()), key=lambda name: (_FIRST.get(name, 1), name))
+    _check_paired(received, ordered, request)
 
     units = units_of(received, request)
     hashed = _hashed(rows)
     tasks = {address[2][0]: row.task for address, row in received.items()}
-    trials, missing = table_of(received, conditions, units, request, hashed)
+    trials, missing = table_of(received, ordered, units, request, hashed)
     keys = {unit: sorted(members) for unit, members in units.labels.items()}
-    laid = tuple(_condition(name) for name in conditions)
-    dull = not any(row.status is Status.CRASH for row in rows)
-    question = resolve(
-        Question,
-        request,
-        SystemSpec(name="results of other tools"),
-        Library(
-            "results",
-            (),
-            hashlib.sha256(json.dumps(keys, sort_keys=True).encode()).hexdigest()[:16],
-        ),
+    conditions = tuple(_condition(name) for name in ordered)
+    crashed = any(row.status is Status.CRASH for row in rows)
+    facts = ComparisonFacts(
+        system="results of other tools",
+        library="results",
+        library_hash=hashlib.sha256(json.dumps(keys, sort_keys=True).encode()).hexdigest()[:16],
         n_scenes=len(units.labels),
         seeds=units.seeds,
-        primary=primary_condition(request.primary or "", laid),
+        primary=primary_condition(request.primary or "", conditions),
         trained=request.generalise == "models",
-        ends={Status.TIMEOUT.value: "no success"} if dull else {},
+        ends={} if crashed else {Status.TIMEOUT.value: "no success"},
         metrics=_metrics(request),
-        judged=JudgedTrials(pairing="hashes" if hashed else "keys", unit=request.cluster),
+        pairing="hashes" if hashed else "keys",
+        unit=request.cluster,
     )
     longer = [unit for unit, members in units.labels.items() if len(members) > len(units.seeds)]
     findings = _findings(trials, missing, longer, tasks, request, hashed)
-    return LaidOut(question, laid, trials, tuple(findings))
+    return PairedResults(
+        request.model_copy(update={"folder": None}), facts, conditions, trials, tuple(findings)
+    )
 
 
 def _condition_names(conditions: Collection[str], question: JudgeQuestion) -> dict[str, str]:

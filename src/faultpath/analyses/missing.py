@@ -82,7 +82,7 @@ def repairs_needed(
             chosen[place] = True
         return chosen
 
-    def settled(some: int) -> bool:
+    def holds_with(some: int) -> bool:
         """Return whether the effect holds, evenly, where the first of the failed pairs ran."""
         left = [np.where(ran(some), np.nan, part) for part in adverse]
         still = [np.where(part & ~ran(some), np.nan, 0.0) for part in lost]
@@ -94,6 +94,6 @@ def repairs_needed(
     low, high = 0, len(places)
     while high - low > 1:
         middle = (low + high) // 2
-        low, high = (low, middle) if settled(middle) else (middle, high)
+        low, high = (low, middle) if holds_with(middle) else (middle, high)
     repair, baseline = (int((part & ran(high)).sum()) for part in lost)
     return repair, baseline

@@ -1,9 +1,9 @@
-"""The decision record: what was asked, what came out, and what it means."""
+"""The result of an audit in numbers: what was asked, what came out, and what it means."""
 
 from typing import Literal
 
 from faultpath.analyses.effects import Change, Effect, Secondary
-from faultpath.analyses.question import EarlierLook, Question
+from faultpath.analyses.facts import ComparisonFacts, EarlierAnalysis, Question
 from faultpath.core.results import Result
 from faultpath.stats.estimate import BreakEven
 
@@ -70,11 +70,16 @@ class Ahead(Result):
     """Whole percentage of `from` and `up to`."""
 
 
+Share = Literal["frequency", "beta"]
+"""The share of episodes with the fault, or of the faults of an isolated condition's module that
+reach all modules at once: the beta factor."""
+
+
 class ConditionBreakEven(Result):
-    """The shares at which neither variant is decided to be ahead, under one condition: of episodes
-    with the fault, or of the module's faults that are common cause (beta)."""
+    """The shares at which neither variant is decided to be ahead, under one condition."""
 
     condition: str
+    over: Share
     result: BreakEven
     curve: tuple[tuple[float, float, float, float], ...]
     """`(share, expected difference, low, high)` in fractions and percentage points. The band
@@ -82,6 +87,17 @@ class ConditionBreakEven(Result):
     ahead: tuple[Ahead, ...]
     """Ranges of the share at which a version is ahead; empty where no end has an effect that
     leads."""
+
+
+class Testing(Result):
+    """How the effects and changes of an audit are tested together."""
+
+    hypotheses: int
+    """Contrasts that share the error rate of 5 %: all that the audit may announce."""
+    scenes_needed: int
+    """With fewer, nothing can be decided, whatever comes out."""
+    intervals: str
+    """Method of the effects' intervals."""
 
 
 class StoppedAudit(Result):
@@ -98,40 +114,44 @@ class StoppedAudit(Result):
 class AuditResult(Result):
     """The numbers that tables, pictures and the report show; written as `record.json`."""
 
-    format: Literal[5] = 5
+    format: Literal[6] = 6
     question: Question
+    facts: ComparisonFacts
     conditions: tuple[Condition, ...]
     cells: tuple[VariantCounts, ...]
     effects: tuple[Effect, ...]
     changes: tuple[Change, ...]
     secondary: tuple[Secondary, ...] = ()
     """Under each condition that has an effect."""
-    break_even: tuple[ConditionBreakEven, ...]
-    """Over the frequency of the fault, each condition but that of correct inputs."""
-    break_even_beta: tuple[ConditionBreakEven, ...] = ()
-    """Over the beta factor, each isolated condition: of the faults of that module, the share that
-    reaches all modules at once."""
+    break_evens: tuple[ConditionBreakEven, ...]
+    """Over the frequency of the fault under each condition but that of correct inputs, and over the
+    beta factor under each isolated one."""
     scenes: int
     """Scenes that are compared: the most that any effect rests on."""
     invalid: Invalid | None = None
     """Why no result follows from these trials: then nothing is significant."""
-    scenes_needed: int
-    """With fewer, nothing can be decided, whatever comes out."""
-    hypotheses: int
-    """Contrasts that share the error rate of 5 %: all that the audit may announce."""
-    intervals: str
-    """Method of the effects' intervals."""
+    testing: Testing
     findings: tuple[str, ...] = ()
     """Remarks on the run that a reader has to know, a sentence each."""
     stopped: StoppedAudit | None = None
     """State at which a sequential audit ended."""
-    earlier: tuple[EarlierLook, ...] = ()
+    earlier: tuple[EarlierAnalysis, ...] = ()
     """Concluded before, from the same trials and otherwise."""
 
     @property
     def few(self) -> bool:
         """Whether there are too few scenes to decide anything."""
-        return self.scenes < self.scenes_needed
+        return self.scenes < self.testing.scenes_needed
+
+    @property
+    def break_even(self) -> tuple[ConditionBreakEven, ...]:
+        """Those over the frequency of the fault."""
+        return tuple(shares for shares in self.break_evens if shares.over == "frequency")
+
+    @property
+    def break_even_beta(self) -> tuple[ConditionBreakEven, ...]:
+        """Those over the beta factor."""
+        return tuple(shares for shares in self.break_evens if shares.over == "beta")
 
     def winner(self, sign: int) -> str:
         """Return the variant of a decided side."""
@@ -144,22 +164,23 @@ class AuditResult(Result):
     @property
     def scenes_run(self) -> str:
         """The number of scenes, and of how many where an audit could have taken more."""
-        most = str(self.question.n_scenes)
-        if self.stopped is None or self.stopped.scenes == self.question.n_scenes:
+        most = str(self.facts.n_scenes)
+        if self.stopped is None or self.stopped.scenes == self.facts.n_scenes:
             return most
         return f"{self.stopped.scenes} of at most {most}"
 
     @property
     def stopping(self) -> str:
         """How a sequential audit was to stop."""
-        rule = self.question.stop
-        if rule is None:
+        order, margin_pp = self.facts.order, self.question.margin_pp
+        if order is None:
             return ""
-        what = "the primary contrast" if rule.when == "decided" else "every effect"
-        small = f" or shown to be smaller than {rule.margin_pp:g} pp" if rule.margin_pp else ""
+        every = self.question.stop_when == "all-decided"
+        what = "every effect" if every else "the primary contrast"
+        small = f" or shown to be smaller than {margin_pp:g} pp" if margin_pp else ""
         return (
             f"the audit was to stop once {what} is significant{small}, at a look after every "
-            f"{'scene' if rule.look == 1 else f'{rule.look} scenes'}, or after "
-            f"{self.question.n_scenes}; the order of its scenes was drawn beforehand from the hash "
-            f"of the library and the seed {rule.order_seed}"
+            f"{'scene' if order.per_analysis == 1 else f'{order.per_analysis} scenes'}, or after "
+            f"{self.facts.n_scenes}; the order of its scenes was drawn beforehand from the hash "
+            f"of the library and the seed {order.seed}"
         )

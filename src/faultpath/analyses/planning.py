@@ -7,8 +7,8 @@ from pathlib import PurePath
 
 from faultpath.analyses.analysis import Analysis, Round, Rounds
 from faultpath.analyses.decide import decide, primary_condition
+from faultpath.analyses.facts import ComparisonFacts, SceneOrder, facts_of, question_of
 from faultpath.analyses.model import CORRECT, SHARED, Condition, FaultedTap
-from faultpath.analyses.question import Question, StopRule, resolve
 from faultpath.analyses.record import DecisionRecord
 from faultpath.analyses.sentences.wording import counted
 from faultpath.analyses.stopping import stops
@@ -30,9 +30,9 @@ from faultpath.run.question import FEWEST_TRAININGS, AuditQuestion, RepairQuesti
 from faultpath.system.declared import Library, Variant
 from faultpath.system.system import System
 
-LOOK = 5
-"""Scenes from one look to the next of a sequential audit, where the system runs as many at once:
-fewer save few trials and cost much for systems that run their scenes together."""
+_BATCH = 5
+"""Scenes from one analysis to the next of a sequential audit, where the system runs as many at
+once: fewer save few trials and cost much for systems that run their scenes together."""
 _ORDER_SEED = 0
 """One order for each library, so that nobody can choose among several."""
 
@@ -41,8 +41,8 @@ _ORDER_SEED = 0
 class Audit(Analysis[None]):
     """A question and the study that answers it."""
 
-    request: AuditQuestion
-    question: Question
+    question: AuditQuestion
+    facts: ComparisonFacts
     conditions: tuple[Condition, ...]
     study: Study
 
@@ -66,11 +66,18 @@ class Audit(Analysis[None]):
             )
             for condition in self.conditions
         ]
-        return decide(question, conditions, trials, deliveries.findings, repeats=deliveries.repeats)
+        return decide(
+            question,
+            self.facts,
+            conditions,
+            trials,
+            deliveries.findings,
+            repeats=deliveries.repeats,
+        )
 
     def stops(self, trials: Trials) -> bool:
         """Return whether a sequential audit ends with these trials."""
-        return stops(self.question, self.conditions, trials)
+        return stops(self.question, self.facts, self.conditions, trials)
 
 
 def faulted_taps(counts: Sequence[TapCount]) -> tuple[FaultedTap, ...]:
@@ -103,14 +110,17 @@ def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library
     sequential = request.stop_when is not None
     chosen = scenes_of(library, request.scenes, in_order=not sequential)
     faults = system.fault(request.fault)
-    faults_of = faults_by_condition(faults, variants)
+    by_condition = faults_by_condition(faults, variants)
     conditions = [
-        _condition(name, of[request.repair], of[request.baseline]) for name, of in faults_of.items()
+        _condition(name, by_variant[request.repair], by_variant[request.baseline])
+        for name, by_variant in by_condition.items()
     ]
     # Where the fault cannot reach a variant, that is the treatment under correct inputs: it runs
     # once.
     rows = [
-        row for condition, of in faults_of.items() for row in rows_of(condition, of, request.seeds)
+        row
+        for condition, by_variant in by_condition.items()
+        for row in rows_of(condition, by_variant, request.seeds)
     ]
     _check(system, request)
     study = Study(
@@ -119,38 +129,30 @@ def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library
         library=library.name,
         scenes=chosen,
         rows=tuple(rows),
-        look=min(LOOK, system.block_size or LOOK) if sequential else 0,
+        scenes_per_analysis=min(_BATCH, system.block_size or _BATCH) if sequential else 0,
     )
-    stop = None
-    if request.stop_when is not None:
-        stop = StopRule(
-            when=request.stop_when,
-            margin_pp=request.margin_pp,
-            order=chosen,
-            order_seed=_ORDER_SEED,
-            look=study.look,
-            trials=len(study.treatments()),
-        )
-    question = resolve(
-        Question,
-        request,
-        spec,
-        library,
-        fault=str(request.fault),
-        faults=faults,
+    order = SceneOrder(
+        scenes=chosen,
+        seed=_ORDER_SEED,
+        per_analysis=study.scenes_per_analysis,
+        trials=len(study.treatments()),
+    )
+    facts = ComparisonFacts(
+        **facts_of(system, spec, library),
         n_scenes=len(chosen),
+        seeds=request.seeds,
         primary=primary_condition(request.primary or "", conditions),
-        trained=system.trained,
+        faults=faults,
         ends={status.value: words for status, words in system.ends.items()},
         metrics=dict(system.metrics),
-        thresholds=tuple(sorted(set(request.thresholds))),
-        stop=stop,
+        order=order if sequential else None,
     )
     named = [study.name, str(request.fault), PurePath(library.name).stem]
     if request.stop_when is not None:
         small = "" if request.margin_pp is None else f"-within-{request.margin_pp:g}"
         named.append(f"until-{request.stop_when}{small}")
-    return Audit(request, question, system, tuple(named), tuple(conditions), study)
+    question = question_of(request, AuditQuestion, spec)
+    return Audit(question, system, tuple(named), facts, tuple(conditions), study)
 
 
 def faults_by_condition(
@@ -195,12 +197,12 @@ def rows_of(
 def _condition(name: str, repair: Sequence[Fault], baseline: Sequence[Fault]) -> Condition:
     """Return a condition of the fault, with what it reaches in each variant."""
     titles = {CORRECT: "Correct inputs", SHARED: "Shared fault"}
-    ours, theirs = (
+    readers, baseline_readers = (
         tuple(dict.fromkeys(reader for fault in faults for reader in fault.readers))
         for faults in (repair, baseline)
     )
     title = titles.get(name, f"{name.replace('_', ' ').capitalize()} only")
-    return Condition(name=name, title=title, readers=ours, baseline_readers=theirs)
+    return Condition(name=name, title=title, readers=readers, baseline_readers=baseline_readers)
 
 
 def _check(system: System, question: AuditQuestion) -> None:

@@ -1,16 +1,16 @@
 """At which shares, of faulty episodes or of common causes, a version is ahead."""
 
-from faultpath.analyses.compared import ComparedTrials
+from faultpath.analyses.compared import PairedTrials
 from faultpath.analyses.effects import Effect
-from faultpath.analyses.family import Family
-from faultpath.analyses.model import Ahead, ConditionBreakEven
+from faultpath.analyses.family import TestedContrasts
+from faultpath.analyses.model import Ahead, ConditionBreakEven, Share
 from faultpath.analyses.sentences.wording import first, last
 from faultpath.stats.breakeven import break_even, mixture_curve, only
 from faultpath.stats.estimate import Region
 
 
 def between(
-    none: Effect, every: Effect, comparison: ComparedTrials, family: Family, beta: bool
+    none: Effect, every: Effect, comparison: PairedTrials, family: TestedContrasts, over: Share
 ) -> ConditionBreakEven | None:
     """Return where baseline and repair are even between the effects at two ends of a share, over
     the scenes that both have; `None` where they have none in common.
@@ -30,7 +30,8 @@ def between(
     fills = tuple(zip(*filled, strict=True)) if any(a.value != b.value for a, b in filled) else ()
     result = break_even(*tested, level=level, fills=fills)
     return ConditionBreakEven(
-        condition=none.condition if beta else every.condition,
+        condition=none.condition if over == "beta" else every.condition,
+        over=over,
         result=only(result, [region for region in result.regions if _shown(region, none, every)]),
         curve=mixture_curve(*tested, level=level, fills=fills),
         ahead=_ahead(result.regions, none, every),

@@ -13,8 +13,7 @@ def contrasts(record: DecisionRecord) -> dict[str, tuple[float, float]]:
     tested = [effect for effect in record.effects if effect.corrected_p is not None]
     p_values = {effect_name(effect.condition): effect.p_value for effect in tested}
     p_values |= {change_name(change.isolated): change.p_value for change in record.changes}
-    question = record.question
-    parts = alpha_shares([effect.condition for effect in tested], question.primary)
+    parts = alpha_shares([effect.condition for effect in tested], record.facts.primary)
     return {name: (p, parts[name]) for name, p in p_values.items()}
 
 

@@ -3,14 +3,12 @@
 import os
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import replace
 from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from faultpath.analyses.planning import Audit, plan_audit
-from faultpath.analyses.question import Question
 from faultpath.analyses.record import DecisionRecord
 from faultpath.analyses.sentences.wording import counted
 from faultpath.analyses.stopping import with_earlier_analyses
@@ -31,10 +29,10 @@ from faultpath.core.files.atomic import write_file, write_text
 from faultpath.core.files.parquet import Unreadable
 from faultpath.faults import FaultText
 from faultpath.report.inputs import ReportInput
-from faultpath.run import Deliveries, system_shown
+from faultpath.run import system_shown
 from faultpath.run.execution.runner import RunResult
-from faultpath.run.question import AuditQuestion
-from faultpath.run.store.folder import read_regular, seal
+from faultpath.run.question import AuditCall
+from faultpath.run.store.folder import OUTCOMES, read_regular, seal
 from faultpath.run.store.signals import SIGNALS, Signals, decode_signals, encode_signals
 from faultpath.run.work.executor import Progress
 from faultpath.system.system import System
@@ -43,7 +41,7 @@ _SCENES_FOR_ONE = 20
 """So many scenes of an audit, and one more is recorded: at most about a twentieth more trials."""
 
 
-@with_question_signature(AuditQuestion)
+@with_question_signature(AuditCall)
 def audit(
     system: str | PathLike[str] | System, *, progress: bool | Display = True, **arguments: Any
 ) -> Run:
@@ -63,10 +61,11 @@ def audit(
         UserError: What was asked cannot be done; the sentence says why, and what to do.
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
-    return run("audit", AuditQuestion, plan_audit, carry_out, system, arguments, progress)
+    conduct = partial(carry_out, signals=arguments.get("signals", True))
+    return run("audit", AuditCall, plan_audit, conduct, system, arguments, progress)
 
 
-@with_question_signature(AuditQuestion)
+@with_question_signature(AuditCall)
 def audits(
     system: str | PathLike[str] | System, *, progress: bool | Display = True, **arguments: Any
 ) -> tuple[Run, ...]:
@@ -102,8 +101,8 @@ def audits(
     return tuple(runs)
 
 
-def carry_out(audit: Audit, job: Job) -> Run:
-    """Run, decide and write what the run folder's pages are made from; return the run.
+def carry_out(audit: Audit, job: Job, signals: bool = True) -> Run:
+    """Run, decide, record `signals`, and write what the run folder's pages are made from.
 
     Raises `Stopped` on Ctrl-C, and `UserError` where the study cannot be run or nothing can be
     compared.
@@ -112,53 +111,52 @@ def carry_out(audit: Audit, job: Job) -> Run:
     shown = system_shown(system, (question.baseline, question.repair), audit.study.scenes)
     _, result = job.trials(audit)
 
-    def conclude(question: Question, deliveries: Deliveries = result.deliveries) -> DecisionRecord:
-        return replace(audit, question=question).conclude(result.trials, deliveries)
-
-    record = concluded(folder, question, conclude)
-    signals = _kept_signals(folder, result)
-    if audit.request.signals:
-        signals, finding, repeats = _recorded(audit, job, record, result, signals)
+    conclude = partial(audit.conclude, result.trials)
+    library_hash = audit.facts.library_hash
+    record = concluded(folder, library_hash, partial(conclude, result.deliveries))
+    recorded = _kept_signals(folder, result)
+    if signals:
+        recorded, finding, repeats = _recorded(audit, job, record, result, recorded)
         if not repeats:
             broken = result.deliveries.model_copy(update={"repeats": False})
-            record = concluded(folder, question, partial(conclude, deliveries=broken))
+            record = concluded(folder, library_hash, partial(conclude, broken))
         if finding:
             job.display.say(finding)
             record = record.model_copy(update={"findings": (*record.findings, finding)})
-    signals = dict(sorted(signals.items()))
+    recorded = dict(sorted(recorded.items()))
     write_text(folder / RECORD, as_text(record), folder)
     write_text(folder / SYSTEM, shown.model_dump_json(indent=1) + "\n", folder)
-    if signals:
-        write_file(folder / SIGNALS, encode_signals(signals), folder)
-    files = (*MADE_FROM, SIGNALS) if signals else MADE_FROM
+    if recorded:
+        write_file(folder / SIGNALS, encode_signals(recorded), folder)
+    files = (*MADE_FROM, SIGNALS) if recorded else MADE_FROM
     provenance = job.finish(result, system, files)
-    source = ReportInput(record, provenance, shown, result.trials, signals)
+    source = ReportInput(record, provenance, shown, result.trials, recorded)
     return Run(folder, source)
 
 
 def concluded(
-    folder: Path, question: Question, conclude: Callable[[Question], DecisionRecord]
+    folder: Path, library_hash: str, conclude: Callable[[], DecisionRecord]
 ) -> DecisionRecord:
-    """Return what is concluded of a question; a record that the folder holds of these trials
-    stands in it: see `with_earlier_analyses`.
+    """Return what is concluded; a record that the folder holds of these trials stands in it: see
+    `with_earlier_analyses`.
 
     `UserError` for a record that cannot be read: taken for none, earlier analyses would be lost.
     """
     if not os.path.lexists(folder / RECORD):
-        return conclude(question)
+        return conclude()
     before = parsed(read_regular(folder / RECORD), folder / RECORD, DecisionRecord)
-    if before.question.library_hash != question.library_hash:  # other results
-        return conclude(question)
-    return with_earlier_analyses(conclude(question), (before,))
+    if before.facts.library_hash != library_hash:  # other results
+        return conclude()
+    return with_earlier_analyses(conclude(), (before,))
 
 
 def _kept_signals(folder: Path, result: RunResult) -> Signals:
     """Return the signals that the folder holds of these very trials; none where they changed."""
     with suppress(OSError, UserError, Unreadable):
         earlier = read_provenance(folder)
-        then = (earlier.system_fingerprint, earlier.outcomes_sha256, earlier.files.get(SIGNALS))
-        here = (result.system_fingerprint, result.outcomes_sha256, seal(folder, [SIGNALS])[SIGNALS])
-        if then == here:
+        here = {OUTCOMES: result.outcomes_sha256, **seal(folder, [SIGNALS])}
+        same_code = earlier.code.system_fingerprint == result.system_fingerprint
+        if same_code and here.items() <= earlier.files.items():
             return decode_signals(read_regular(folder / SIGNALS))
     return {}
 
@@ -175,7 +173,7 @@ def _recorded(
 
     What goes wrong here is a finding, never an error of the audit.
     """
-    few = shown_first(record, result.trials)[: 1 + record.scenes // _SCENES_FOR_ONE]
+    few = shown_first(record, result.trials, recorded)[: 1 + record.scenes // _SCENES_FOR_ONE]
     named = {condition.name for condition in record.conditions}
     before = outcomes_at(result.trials)
     missing = [

@@ -59,7 +59,6 @@ class RunComparison:
         }
 
     def __repr__(self) -> str:
-        """Return the headline."""
         return f"<Comparison: {self.headline}>"
 
 

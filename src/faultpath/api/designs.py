@@ -9,11 +9,11 @@ from faultpath.api.folders import MAP, MAP_MADE_FROM, as_text
 from faultpath.api.job import Job, run, with_question_signature
 from faultpath.api.runs import MapRun
 from faultpath.core.files.atomic import write_text
-from faultpath.run.question import MapQuestion
+from faultpath.run.question import MapCall
 from faultpath.system.system import System
 
 
-@with_question_signature(MapQuestion)
+@with_question_signature(MapCall)
 def map(
     system: str | PathLike[str] | System, *, progress: bool | Display = True, **arguments: Any
 ) -> MapRun:
@@ -30,7 +30,7 @@ def map(
         UserError: What was asked cannot be done; the sentence says why, and what to do.
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
-    return run("map", MapQuestion, plan_map, _map, system, arguments, progress)
+    return run("map", MapCall, plan_map, _map, system, arguments, progress)
 
 
 def _map(plan: MapPlan, job: Job) -> MapRun:

@@ -95,15 +95,13 @@ def _doubts(
     deliveries: Deliveries,
 ) -> Iterator[str]:
     """Yield what shows that the files are of different runs, or were put together by hand."""
-    question = record.question
-    if provenance.files[OUTCOMES] != provenance.outcomes_sha256:
-        yield "provenance gives the outcomes two digests"
-    if provenance.library_hash != question.library_hash:
+    question, facts = record.question, record.facts
+    if provenance.library_hash != facts.library_hash:
         yield "result and provenance name different libraries"
     if tuple(variant.name for variant in shown.variants) != (question.baseline, question.repair):
         yield "the system's variants are not those of the question"
-    if question.metric and question.metric not in question.metrics:
-        yield f"the result shows a metric '{question.metric}' that its question does not declare"
+    if question.metric and question.metric not in facts.metrics:
+        yield f"the result shows a metric '{question.metric}' that its system does not declare"
     yield from _other_trials(record, trials)
     yield from _other_effects(record)
     yield from _other_taps(record, shown.interface, deliveries)
@@ -126,7 +124,7 @@ def _other_trials(record: DecisionRecord, trials: Trials) -> Iterator[str]:
     if not variants or set(cells) != variants or set(rows) != variants:
         yield "the result and the outcomes have different versions, conditions or seeds"
         return
-    if np.isnan(trials.time_s[~trials.failed]).any() and question.judged is None:
+    if np.isnan(trials.time_s[~trials.failed]).any() and not record.facts.judged:
         yield "trials of an audit have no time"
     solved = trials.has(Status.SUCCESS)
     if any(cells[variant] != (len(of), int(solved[of].sum())) for variant, of in rows.items()):
@@ -140,7 +138,7 @@ def _other_trials(record: DecisionRecord, trials: Trials) -> Iterator[str]:
 def _other_effects(record: DecisionRecord) -> Iterator[str]:
     """Yield where effects do not fit the conditions of the record, or each other."""
     conditions = {condition.name for condition in record.conditions}
-    results = (*record.effects, *record.break_even, *record.break_even_beta)
+    results = (*record.effects, *record.break_evens)
     if not conditions.issuperset(result.condition for result in results):
         yield "the result has effects under conditions that it does not name"
     names = [effect.condition for effect in record.effects]

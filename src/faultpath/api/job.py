@@ -22,7 +22,7 @@ from faultpath.run.code import system_code
 from faultpath.run.execution.provenance import run_provenance
 from faultpath.run.execution.runner import Failure, RunResult, run_study
 from faultpath.run.provenance import RunProvenance
-from faultpath.run.question import Asked, Request, Running, ScanQuestion, ask
+from faultpath.run.question import Asked, Request, Running, ScanCall, ask
 from faultpath.run.store.folder import keyed
 from faultpath.run.work.executor import Executor, Progress
 from faultpath.system.checks import library_of
@@ -31,7 +31,7 @@ from faultpath.system.system import System
 
 _Call = TypeVar("_Call", bound=Callable[..., Any])
 _Asked = TypeVar("_Asked", bound=Request)
-_Request = TypeVar("_Request", bound=Running | ScanQuestion)
+_Request = TypeVar("_Request", bound=Running | ScanCall)
 _Plan = TypeVar("_Plan", bound=Analysis[Any])
 _Finished = TypeVar("_Finished", bound=Run | MapRun | ScanRun)
 
@@ -222,7 +222,7 @@ def run(
     return finished
 
 
-def run_folder(question: Running | ScanQuestion, chosen: Chosen, named: Sequence[str]) -> Path:
+def run_folder(question: Running | ScanCall, chosen: Chosen, named: Sequence[str]) -> Path:
     """Return the folder of a run.
 
     Without a folder of the caller's it is named after everything that makes it another study,

@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 
 from faultpath.analyses.decide import decide
-from faultpath.analyses.judging import LaidOut, pair_results
-from faultpath.analyses.question import Question
+from faultpath.analyses.judging import PairedResults, pair_results
 from faultpath.analyses.record import DecisionRecord
 from faultpath.api.audit import concluded
 from faultpath.api.display import Display, display
@@ -64,32 +63,35 @@ def judge(
     shown = display(progress, "judge", fields)
     started = datetime.now(UTC)
     rows, sources = read_results(named, question)
-    laid = pair_results(rows, question)
-    folder = question.folder or _folder(laid, sources)
+    paired = pair_results(rows, question)
+    folder = question.folder or _folder(paired, sources)
     if (folder / "manifest.json").exists():
         raise UserError(f"{folder} holds an audit's trials: give another folder with --out.")
 
-    def conclude(question: Question) -> DecisionRecord:
-        return decide(question, laid.conditions, laid.trials, laid.findings)
+    def conclude() -> DecisionRecord:
+        return decide(
+            paired.question, paired.facts, paired.conditions, paired.trials, paired.findings
+        )
 
     begin(folder)
-    record = concluded(folder, laid.question, conclude)
+    record = concluded(folder, paired.facts.library_hash, conclude)
     with locked(folder, shown.say):
-        system = _system(laid.question)
-        result = _stored(folder, laid, system)
+        system = _system(paired.question)
+        result = _stored(folder, paired, system)
         write_text(folder / RECORD, as_text(record), folder)
         provenance = run_provenance(folder, MADE_FROM, result, started, shown.command, local(0))
-        provenance = amend(folder, provenance.model_copy(update={"data": sources}), MADE_FROM)
-    run = Run(folder, ReportInput(record, provenance, system, laid.trials))
+        code = provenance.code.model_copy(update={"data": sources})
+        provenance = amend(folder, provenance.model_copy(update={"code": code}), MADE_FROM)
+    run = Run(folder, ReportInput(record, provenance, system, paired.trials))
     run.report()
     if not shown.is_command:
-        for finding in laid.findings:
+        for finding in paired.findings:
             shown.say(finding)
     return run
 
 
-def _folder(laid: LaidOut, sources: dict[str, str]) -> Path:
-    question = laid.question
+def _folder(paired: PairedResults, sources: dict[str, str]) -> Path:
+    question = paired.question
     content = json.dumps(
         [sorted(sources.values()), question.model_dump(mode="json")], sort_keys=True
     )
@@ -98,7 +100,7 @@ def _folder(laid: LaidOut, sources: dict[str, str]) -> Path:
     return Path("runs") / f"judged-{variants}-{digest}"
 
 
-def _system(question: Question) -> SystemShown:
+def _system(question: JudgeQuestion) -> SystemShown:
     """Return a system of which nothing is known but the names of two variants."""
     return SystemShown(
         control_dt_s=1.0,
@@ -111,9 +113,9 @@ def _system(question: Question) -> SystemShown:
     )
 
 
-def _stored(folder: Path, laid: LaidOut, system: SystemShown) -> RunResult:
+def _stored(folder: Path, paired: PairedResults, system: SystemShown) -> RunResult:
     """Write the trials and what else pages are made from."""
-    question, trials = laid.question, laid.trials
+    trials = paired.trials
     kinds, first = np.unique(trials.places[:, :3], axis=0, return_index=True)
     rows: list[list[int]] = kinds[np.argsort(first)].tolist()
     taps = tuple(
@@ -125,7 +127,7 @@ def _stored(folder: Path, laid: LaidOut, system: SystemShown) -> RunResult:
         )
         for variant, condition, seed in rows
     )
-    deliveries = Deliveries(rows=taps, findings=laid.findings)
+    deliveries = Deliveries(rows=taps, findings=paired.findings)
     outcomes = encode_outcomes(trials)
     write_file(folder / OUTCOMES, outcomes, folder)
     write_file(folder / TRACES, encode_traces(Trials.of(())), folder)
@@ -141,5 +143,5 @@ def _stored(folder: Path, laid: LaidOut, system: SystemShown) -> RunResult:
         outcomes_sha256=digest,
         system_fingerprint=digest[:16],
         code=(),
-        library_hash=question.library_hash,
+        library_hash=paired.facts.library_hash,
     )

@@ -7,6 +7,7 @@ from platform import python_version
 
 from faultpath.analyses.examples import choose as picked
 from faultpath.analyses.pairs import by_scene, read_pairs
+from faultpath.analyses.parting import Heard, Parting, parting
 from faultpath.analyses.planning import plan_audit
 from faultpath.analyses.record import DecisionRecord
 from faultpath.api.folders import RECORD
@@ -25,7 +26,7 @@ from faultpath.run.execution.dispatch import Built
 from faultpath.run.execution.provenance import amend, processor
 from faultpath.run.execution.recheck import difference
 from faultpath.run.provenance import RunProvenance
-from faultpath.run.question import AuditQuestion, ask
+from faultpath.run.question import AuditQuestion
 from faultpath.run.store.signals import SIGNALS, Signal, encode_signals
 from faultpath.run.store.tables import TrialAddress, address_of
 from faultpath.run.trust import check_named
@@ -77,13 +78,17 @@ def chosen_scenes(
                 raise UserError(f"the run: {unknown(what, name, known)}")
     if scenes:
         return tuple(dict.fromkeys(scenes))
-    return tuple(scene for scene, _ in shown_first(source.record, source.trials))
+    return tuple(scene for scene, _ in shown_first(source.record, source.trials, source.signals))
 
 
-def shown_first(record: DecisionRecord, trials: Trials) -> tuple[tuple[str, int], ...]:
-    """Return the scenes that the report begins with, and the seed of each."""
+def shown_first(
+    record: DecisionRecord, trials: Trials, recorded: Iterable[TrialAddress] = ()
+) -> tuple[tuple[str, int], ...]:
+    """Return the scenes that the report begins with, and the seed of each; of scenes that go alike
+    those of `recorded` trials come first."""
     pairs = read_pairs(trials, record)
-    return picked(record, pairs) or tuple(by_scene(pairs))[:1]
+    kept = {(at.scene, at.seed) for at in recorded}
+    return picked(record, pairs, kept) or tuple(by_scene(pairs))[:1]
 
 
 def replay(
@@ -101,29 +106,27 @@ def replay(
     Raises `UserError` where the system cannot be built, or no longer has the scenes and variants
     of the run.
     """
-    question = source.record.question
-    if question.judged:
+    question, facts = source.record.question, source.record.facts
+    if not isinstance(question, AuditQuestion):
         raise UserError(
             "other tools ran these trials, and nothing of theirs can be run again here."
         )
-    if SystemSpec(name=question.system).is_object:
+    if SystemSpec(name=facts.system).is_object:
         raise UserError(
-            f"the run is of a {question.system}, which only its own process had: put what builds "
+            f"the run is of a {facts.system}, which only its own process had: put what builds "
             "the system into a file, and audit that."
         )
     treatments = question.baseline, question.repair
-    spec = SystemSpec(name=question.system, options=question.options)
+    spec = SystemSpec(name=facts.system, options=question.options)
     check_named(RECORD, spec, treatments, code, trust)
     chosen = choose(spec.name, spec.options, None, treatments)
     system = chosen.system
-    library = library_of(system, question.library)
-    if library.content_hash != question.library_hash:
+    library = library_of(system, facts.library)
+    if library.content_hash != facts.library_hash:
         raise UserError(
-            f"library '{question.library}' has other scenes than the run: bring its file back."
+            f"library '{facts.library}' has other scenes than the run: bring its file back."
         )
-    kept = ("baseline", "repair", "fault", "seeds")
-    request = ask(AuditQuestion, {name: getattr(question, name) for name in kept})
-    study = plan_audit(system, chosen.spec, request, library).study
+    study = plan_audit(system, chosen.spec, question, library).study
     before = outcomes_at(source.trials)
     named = conditions or {row.condition for row in study.rows}
     addresses = [at for at in before if at.scene in scenes and at.condition in named]
@@ -141,22 +144,22 @@ def replay(
 
 def changes(run: RunProvenance, system: System, state: CodeState) -> tuple[str, ...]:
     """Say what has changed since a run, of all that may decide a trial."""
-    files = {**run.sources, **run.data}, {**state.files, **state.data}
+    files = {**run.code.sources, **run.code.data}, {**state.files, **state.data}
     names = sorted(
         name
         for name in {*files[0], *files[1]}
         if files[0].get(name) != files[1].get(name)
         and (name in files[1] or name.partition("/")[0] not in files[1])  # a package is one entry
     )
-    versions = {"Python": (run.python, python_version())}
+    versions = {"Python": (run.machine.python, python_version())}
     versions |= {
-        name: (text, here) for name, text in run.packages.items() if (here := release(name))
+        name: (text, here) for name, text in run.machine.packages.items() if (here := release(name))
     }
     changed = [f"files ({named(names)})"] * bool(names)
     changed += [f"{name} ({a}, here {b})" for name, (a, b) in versions.items() if a != b]
     for what, before, here in (
-        ("what computes", run.backend, system.backend),
-        (_PROCESSOR, run.processor, processor()),
+        ("what computes", run.machine.backend, system.backend),
+        (_PROCESSOR, run.machine.processor, processor()),
     ):
         changed += [f"{what} ({before or 'not said'}, here {here})"] * (before != here)
     return tuple(changed)
@@ -197,7 +200,7 @@ def run_again(
     replays: dict[TrialAddress, Replayed] = {}
     done = 0
 
-    def settle(task: BlockSpec, run: RecordedBlock) -> None:
+    def handle_reply(task: BlockSpec, run: RecordedBlock) -> None:
         nonlocal done
         done += 1
         for place, scene in enumerate(task.scenes):
@@ -211,8 +214,49 @@ def run_again(
         note(task.treatment, done, len(tasks))
 
     built = Built.of(system, study.system, study.library)
-    run_blocks(executor, built, tasks, settle)
+    run_blocks(executor, built, tasks, handle_reply)
     return [replays[at] for at in before if at in replays]
+
+
+def where_parted(
+    source: ReportInput,
+    replays: Sequence[Replayed],
+    scenes: Sequence[str],
+    conditions: Sequence[str] = (),
+) -> list[Parting]:
+    """Return where trials that were run again part: the two versions under each condition, and,
+    where several `conditions` are named, each version under the first and under each other.
+
+    Left out is what came out otherwise than in the run.
+    """
+    question, trials = source.record.question, source.trials
+    versions = question.baseline, question.repair
+    known = [condition.name for condition in source.record.conditions]
+    named = list(dict.fromkeys(conditions)) or known
+    couples = [tuple((version, name) for version in versions) for name in named]
+    couples += [
+        ((version, conditions[0]), (version, name))
+        for version in versions
+        for name in named[1:] * bool(conditions)
+    ]
+    again = {replay.address: replay for replay in replays}
+    ids = [scene.id for scene in trials.scenes]
+
+    def heard(variant: str, condition: str, place: int, scene: str) -> Heard:
+        at = TrialAddress(variant, condition, trials.seeds[place], scene)
+        row = int(trials.planned(variant, condition)[place, ids.index(scene)])
+        outcome = trials.outcome(row, scene) if row >= 0 else None
+        return Heard(at, outcome, again[at].signals if at in again else ())
+
+    partings: list[Parting] = []
+    for scene in scenes:
+        for place in range(len(trials.seeds)):
+            for couple in couples:
+                one, other = (heard(*of, place, scene) for of in couple)
+                unlike = (again[of.address].differs for of in (one, other) if of.address in again)
+                if not any(unlike):
+                    partings.append(parting(source.system, one, other))
+    return partings
 
 
 def keep_signals(folder: Path, source: ReportInput, replays: Sequence[Replayed]) -> list[Path]:

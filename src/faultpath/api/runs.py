@@ -29,7 +29,7 @@ from faultpath.report.map import write_map
 from faultpath.report.scan import write_scan
 from faultpath.report.tables import markdown_table
 from faultpath.run.provenance import RunProvenance
-from faultpath.run.store.folder import AGAIN, OUTCOMES, unseal
+from faultpath.run.store.folder import AGAIN, unseal
 from faultpath.run.store.tables import encode_outcomes
 
 
@@ -65,11 +65,6 @@ class Run(FinishedRun):
         super().__init__(folder, source.record, source.provenance)
         self.held = source
         """All that its pages are made from."""
-
-    @property
-    def headline(self) -> str:
-        """The result in one sentence."""
-        return self.record.headline
 
     @property
     def sentences(self) -> tuple[str, ...]:
@@ -171,9 +166,6 @@ def _record(
     """Return the result of a map or scan, after comparing its files with their digests."""
     contents = unseal(folder, provenance.files, names)
     record = parsed(contents[names[0]], folder / names[0], model)
-    if (provenance.files[OUTCOMES], provenance.library_hash) != (
-        provenance.outcomes_sha256,
-        record.question.library_hash,
-    ):
+    if provenance.library_hash != record.facts.library_hash:
         raise UserError(f"the files of {folder} do not belong together: {AGAIN}.")
     return record

@@ -10,11 +10,11 @@ from faultpath.api.folders import SCAN, SCAN_MADE_FROM, as_text
 from faultpath.api.job import Job, begin, run, with_question_signature
 from faultpath.api.runs import ScanRun
 from faultpath.core.files.atomic import write_text
-from faultpath.run.question import ScanQuestion
+from faultpath.run.question import ScanCall
 from faultpath.system.system import System
 
 
-@with_question_signature(ScanQuestion)
+@with_question_signature(ScanCall)
 def scan(
     system: str | PathLike[str] | System, *, progress: bool | Display = True, **arguments: Any
 ) -> ScanRun | Ranking:
@@ -32,9 +32,9 @@ def scan(
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
     if not arguments.get("trials", True):
-        question, chosen, library, _ = begin("scan", ScanQuestion, system, arguments, progress)
+        question, chosen, library, _ = begin("scan", ScanCall, system, arguments, progress)
         return ranked_sources(chosen.system, question, library)
-    return run("scan", ScanQuestion, plan_scan, _scan, system, arguments, progress)
+    return run("scan", ScanCall, plan_scan, _scan, system, arguments, progress)
 
 
 def _scan(plan: ScanPlan, job: Job) -> ScanRun:

@@ -85,7 +85,7 @@ _PANELS = {
         Command(
             "replay",
             replay.replay,
-            "runs/mine --scene cart/003 --signals",
+            "runs/mine --scene cart/003 --where",
             "Run trials again and compare them to the bit.",
         ),
     ),

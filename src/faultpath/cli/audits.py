@@ -14,7 +14,7 @@ from faultpath.cli.options import Json, SystemName, display
 from faultpath.cli.options import path as as_path
 from faultpath.core.errors import UserError
 from faultpath.core.text import one_line
-from faultpath.run.question import AuditQuestion
+from faultpath.run.question import AuditCall
 from faultpath.run.received.question import JudgeQuestion
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ Details = Annotated[
 ]
 
 
-@takes(AuditQuestion)
+@takes(AuditCall)
 def audit(
     system: SystemName,
     details: Details = False,

@@ -7,10 +7,10 @@ import typer
 
 from faultpath.cli.flags import takes
 from faultpath.cli.options import FOUND, Json, SystemName, display
-from faultpath.run.question import MapQuestion, ScanQuestion
+from faultpath.run.question import MapCall, ScanCall
 
 
-@takes(MapQuestion)
+@takes(MapCall)
 def reversal_map(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     """Map the success difference over the error at one module and that at another: where repair
     or baseline is ahead, from which correlation of the errors on, and which error reverses that."""
@@ -31,7 +31,7 @@ def reversal_map(system: SystemName, as_json: Json = False, **arguments: Any) ->
     return FOUND if run.record.failed else 0
 
 
-@takes(ScanQuestion)
+@takes(ScanCall)
 def scan(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     """Find which errors of a system's inputs cancel: each alone costs success, and both together
     less than either, so that correcting one of them alone does not help."""

@@ -168,7 +168,6 @@ def with_system_flags(
 
 
 def _system_option(system: str, spelling: str, option: "Option") -> inspect.Parameter:
-    """Return the flag of an option of a system."""
     choices, text = "|".join(option.choices), option.help.rstrip(".")
     short = 0 < len(choices) <= _SHORT
     if choices and not short:

@@ -88,6 +88,6 @@ class Gate:
         status = FOUND if any(run.broken for run in runs) else 0
         for record in records:
             for name, answer in broken(record, self.conditions).items():
-                say(f"--fail-if {name}: {answer.said}", markup=False, style="bold red")
+                say(f"--fail-if {name}: {answer.reason}", markup=False, style="bold red")
                 status = FOUND
         return status

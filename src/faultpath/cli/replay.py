@@ -1,12 +1,13 @@
 """`faultpath replay`: run trials of a finished run again."""
 
+import json
 from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from faultpath.cli.options import FOUND, Trust
+from faultpath.cli.options import FOUND, Json, Trust
 from faultpath.cli.options import path as as_path
 from faultpath.core.errors import UserError
 
@@ -25,6 +26,15 @@ def replay(
         bool,
         typer.Option("--signals", help="Keep the recorded signals, and make the report again."),
     ] = False,
+    where: Annotated[
+        bool,
+        typer.Option(
+            "--where",
+            help="Say where baseline and repair part: when readings, commands and the state first "
+            "differ. With several --condition, each version under the first and another, too.",
+        ),
+    ] = False,
+    as_json: Json = False,
     code: Annotated[
         list[str] | None,
         typer.Option(
@@ -37,25 +47,28 @@ def replay(
     """Run trials of a finished run again and compare them with the run, to the bit. It runs the
     system that the run names, which has to be installed, named with --code, or trusted. Exits with
     1 where one differs."""
+    from faultpath.analyses.sentences.parting import compared, parted
     from faultpath.analyses.sentences.wording import counted
     from faultpath.analyses.tables.terminal import STYLES
     from faultpath.api.display import SafeConsole
     from faultpath.api.folders import RECORD, read_provenance, read_run
-    from faultpath.api.replaying import chosen_scenes, keep_signals, replay
+    from faultpath.api.replaying import chosen_scenes, keep_signals, replay, where_parted
 
+    if as_json and not where:
+        raise UserError("--json prints what --where finds: give --where too.")
     if RECORD not in read_provenance(folder).files:
         raise UserError(f"{folder} holds no finished audit, and only its trials can be replayed.")
     source = read_run(folder)
     scenes = chosen_scenes(source, scene or (), condition or ())
-    console = SafeConsole()
+    console = SafeConsole(stderr=as_json)
     say = partial(console.print, markup=False)
     again = replay(source, scenes, condition or (), say, trust, code or ())
     replays = again.trials
     unlike = [trial for trial in replays if trial.differs]
     for trial in unlike:
         at = trial.address
-        where = f"{at.variant}, {at.condition}, seed {at.seed}, {at.scene}"
-        console.print(f"{where}: {trial.differs}.", markup=False, style=STYLES["bad"])
+        place = f"{at.variant}, {at.condition}, seed {at.seed}, {at.scene}"
+        console.print(f"{place}: {trial.differs}.", markup=False, style=STYLES["bad"])
     message = (
         f"{counted(len(replays), 'trial')} in {counted(len(scenes), 'scene')} came out as in the "
         "run, to the bit."
@@ -70,6 +83,12 @@ def replay(
             f"{len(unlike)} of {len(replays)} trials came out otherwise than in the run: {why}."
         )
     console.print(message, markup=False, style="" if unlike else STYLES["good"])
+    partings = where_parted(source, replays, scenes, condition or ()) if where else []
+    if as_json:
+        typer.echo(json.dumps([of.model_dump(mode="json") for of in partings], indent=1))
+    for of in partings if not as_json else ():
+        sentence = f"{compared(of)}: {parted(source.record.facts, of)}"
+        console.print(sentence, markup=False, highlight=False)
     if signals and len(unlike) < len(replays):
         for written in keep_signals(folder, source, replays):
             console.print(f"Written: {written}", markup=False, soft_wrap=True)

@@ -172,7 +172,7 @@ def to_numpy(array: Any) -> HostArray:
 def row_bytes(array: Array) -> NDArray[np.uint8]:
     """Return the bytes of each row, `[B, bytes]`, of whatever type the numbers are, such as torch's
     bfloat16, which NumPy has not; this waits for the device."""
-    if _is_torch(array):
+    if type(array) is not np.ndarray and _is_torch(array):
         flat = array.detach().cpu().reshape(array.shape[0], -1).contiguous()
         return to_numpy(flat.view(namespace(array).uint8))
     return np.ascontiguousarray(to_numpy(array).reshape(array.shape[0], -1)).view(np.uint8)
@@ -184,6 +184,8 @@ def together(one: Any, other: Any) -> tuple[Any, Any]:
     A bool or an int combines with anything and is left alone.
     """
     if isinstance(one, int) or isinstance(other, int):
+        return one, other
+    if type(one) is type(other) is np.ndarray:
         return one, other
     if namespace(one) is namespace(other) and one.device == other.device:
         return one, other

@@ -1,11 +1,26 @@
-"""Every kind of intervention, by its name in fault text and in JSON."""
+"""Every kind of intervention, by its name in fault text and in JSON.
 
+Installed packages add kinds of their own by entry points in the group `faultpath.faults`. Nothing
+of such a package is imported before a fault of its kind is met.
+"""
+
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import Annotated, Literal, Self, TypeAlias, get_args
+from functools import cache
+from importlib import import_module
+from importlib.metadata import entry_points
+from typing import Annotated, Any, Literal, Self, TypeAlias, cast, get_args
 
-from pydantic import Discriminator, Field
+from pydantic import (
+    Discriminator,
+    Field,
+    SerializeAsAny,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+)
 
 from faultpath.core.arrays import Array
+from faultpath.core.errors import SystemMistake
 from faultpath.faults.base import Intervention, Memory, Moment
 from faultpath.faults.drawn import Bias, Drift, Dropout, Noise, Shuffle, UniformScale
 from faultpath.faults.recorded import Recorded
@@ -91,7 +106,52 @@ Listed: TypeAlias = (
     | Recorded
     | Sequence
 )
-AnyIntervention: TypeAlias = Annotated[Listed, Discriminator("kind")]
+
+
+@cache
+def installed_kinds() -> Mapping[str, str]:
+    """Return the classes that installed packages declare, `module:Class`, by their kind."""
+    return {point.name: point.value for point in entry_points(group="faultpath.faults")}
+
+
+def intervention_of(kind: str) -> type[Intervention]:
+    """Return the class of a kind, ours or an installed package's; `KeyError` where nobody has it.
+
+    Raises `SystemMistake` where the package's class is none of that kind.
+    """
+    if kind in INTERVENTIONS:
+        return INTERVENTIONS[kind]
+    named = installed_kinds()[kind]
+    module, _, name = named.partition(":")
+    try:
+        declared: Any = getattr(import_module(module), name)
+    except (ImportError, AttributeError) as error:
+        raise SystemMistake(
+            f"the kind of fault '{kind}' is declared as {named}, which cannot be imported "
+            f"({error}): install that package again, or correct its entry point"
+        ) from error
+    if isinstance(declared, type) and issubclass(declared, Intervention):
+        intervention: type[Intervention] = declared
+        if intervention.model_fields["kind"].default == kind:
+            return intervention
+    raise SystemMistake(
+        f"the kind of fault '{kind}' is declared as {named}, which is no Intervention of it: "
+        f'derive it from faultpath.faults.Intervention, with `kind: Literal["{kind}"] = "{kind}"`'
+    )
+
+
+def _read(value: Any, of_ours: ValidatorFunctionWrapHandler) -> Intervention:
+    kind = getattr(value, "kind", None)
+    if isinstance(value, Mapping):
+        kind = cast("Mapping[str, Any]", value).get("kind")
+    if not isinstance(kind, str) or kind in INTERVENTIONS or kind not in installed_kinds():
+        return of_ours(value)
+    return intervention_of(kind).model_validate(value)
+
+
+AnyIntervention: TypeAlias = Annotated[
+    SerializeAsAny[Annotated[Listed, Discriminator("kind")]], WrapValidator(_read)
+]
 """Any intervention; its `kind` says in JSON which."""
 
 Sequence.model_rebuild()
@@ -99,4 +159,4 @@ Sequence.model_rebuild()
 INTERVENTIONS: dict[str, type[Intervention]] = {
     intervention.model_fields["kind"].default: intervention for intervention in get_args(Listed)
 }
-"""By kind."""
+"""Ours, by kind."""

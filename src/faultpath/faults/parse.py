@@ -12,7 +12,7 @@ from faultpath.core.numbers import number_in
 from faultpath.core.text import listed, unknown
 from faultpath.core.validation_messages import misfit_of
 from faultpath.faults.fault import Fault, resolve
-from faultpath.faults.kinds import INTERVENTIONS
+from faultpath.faults.kinds import INTERVENTIONS, installed_kinds, intervention_of
 from faultpath.faults.text import FaultText, number_of
 from faultpath.interface import Interface, groups
 
@@ -20,8 +20,11 @@ FaultPreset: TypeAlias = Callable[[float], tuple[Fault, ...]]
 """A system's named fault: its size in, the faults out, which share a cause unless they name one;
 raises `UserError` for a wrong size."""
 
-KINDS = {kind: intervention for kind, intervention in INTERVENTIONS.items() if kind != "sequence"}
-"""Interventions that text can state: those that need no more than one value."""
+
+def _kinds() -> tuple[str, ...]:
+    """Return the kinds that text can state: those that need no more than one value."""
+    return (*(kind for kind in INTERVENTIONS if kind != "sequence"), *installed_kinds())
+
 
 _WINDOW = {
     "onset": ("onset_step", 0),
@@ -115,7 +118,7 @@ def _preset(
         if name in groups(interface) or name in {channel.name for channel in interface.channels}:
             raise UserError(
                 f"says nothing about what happens to '{name}'; write {name}:KIND=VALUE, kinds: "
-                f"{listed(KINDS)}"
+                f"{listed(_kinds())}"
             )
         problem = unknown("preset", name, presets)
         raise UserError(f"{problem}; a fault of one channel is CHANNEL:KIND=VALUE")
@@ -135,9 +138,9 @@ def _of_kind(
     channels = groups(interface) | {channel.name: (channel.name,) for channel in interface.channels}
     if part.name not in channels:
         raise UserError(unknown("channel", part.name, channels))
-    if kind not in KINDS:
-        raise UserError(unknown("kind", kind, KINDS))
-    head, cls = f"{part.name}:{kind}", KINDS[kind]
+    if kind not in _kinds():
+        raise UserError(unknown("kind", kind, _kinds()))
+    head, cls = f"{part.name}:{kind}", intervention_of(kind)
     fields = [field for field in cls.model_fields if field not in ("kind", cls.value_field)]
     for key in options:
         if key not in fields:
@@ -166,7 +169,7 @@ def _of_kind(
 def _value(key: str, text: str) -> Any:
     if text in ("true", "false"):
         return text == "true"
-    if text in KINDS:
+    if text in _kinds():
         return {"kind": text}
     if "/" in text:
         return tuple(number_of(key, part) for part in text.split("/"))

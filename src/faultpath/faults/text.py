@@ -130,7 +130,9 @@ class FaultText:
     def __get_pydantic_core_schema__(cls, source: object, handler: object) -> CoreSchema:
         """Take text as a field of a model, and write it word for word."""
         written = core_schema.to_string_ser_schema(when_used="always")
-        return core_schema.no_info_plain_validator_function(cls._field, serialization=written)
+        return core_schema.no_info_plain_validator_function(
+            cls._field, serialization=written, json_schema_input_schema=core_schema.str_schema()
+        )
 
     @classmethod
     def _field(cls, value: object) -> Self:

@@ -6,7 +6,6 @@ killed and run again with its journal ends with the same weights as one that was
 
 from __future__ import annotations
 
-import json
 import math
 import time
 from abc import ABC, abstractmethod
@@ -17,16 +16,14 @@ from typing import TYPE_CHECKING, Any
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import write_file
-from faultpath.core.files.opening import opened
+from faultpath.core.files.plain import Misread
 from faultpath.core.streams import generator
-from faultpath.learning.model_card import Schedule, safetensors, tensors
+from faultpath.learning.model_card import Schedule
+from faultpath.learning.tensor_files import encoded, read_tensors
 
 if TYPE_CHECKING:
     from torch import LongTensor, Tensor, nn
     from torch.optim import Optimizer
-
-FORMAT = "faultpath-fit/1"
-_ENTRY = "fit"  # one entry only: the order of several in the file is not fixed
 
 
 class Diverged(UserError):
@@ -101,27 +98,21 @@ class Journal:
 
     def write(self, net: nn.Module, optimiser: Optimizer, history: History) -> None:
         """Write weights, moments and step counts of the optimiser, and the history."""
-        state = {f"model.{name}": value for name, value in tensors(net).items()}
+        state = {f"model.{name}": value for name, value in net.state_dict().items()}
         for number, moments in optimiser.state_dict()["state"].items():
-            state |= {f"optimiser.{number}.{key}": value for key, value in moments.items()}
-        header = {"format": FORMAT, "recipe": self.recipe} | vars(history)
-        write_file(self.path, safetensors().save(state, {_ENTRY: json.dumps(header)}))
+            state |= {f"optimiser.{number}.{name}": value for name, value in moments.items()}
+        write_file(self.path, encoded(state, {"recipe": self.recipe, **vars(history)}))
 
     def read(self, net: nn.Module, optimiser: Optimizer) -> History | None:
         """Fill the net and the optimiser from the file and return the history.
 
         Returns None, and leaves both alone, when the file is damaged or of another recipe.
         """
-        from safetensors import SafetensorError, safe_open
-
         try:
-            opened(self.path).close()
-            with safe_open(self.path, framework="pt") as file:
-                header = json.loads((file.metadata() or {}).get(_ENTRY, "{}"))
-                state = {key: file.get_tensor(key).clone() for key in file.keys()}  # noqa: SIM118 - a file is no mapping: it has keys, and no iterator
-        except (SafetensorError, OSError, json.JSONDecodeError):
+            note, state = read_tensors(self.path)
+        except (OSError, Misread):
             return None
-        if header.get("format") != FORMAT or header.get("recipe") != self.recipe:
+        if not isinstance(note, dict) or note.get("recipe") != self.recipe:
             return None
         weights: dict[str, Tensor] = {}
         moments: dict[int, dict[str, Tensor]] = {}
@@ -134,9 +125,7 @@ class Journal:
                 moments.setdefault(int(number), {})[name] = value
         net.load_state_dict(weights)
         optimiser.load_state_dict(optimiser.state_dict() | {"state": moments})
-        return History(
-            tuple(header["training_loss"]), tuple(header["validation"]), header["duration_s"]
-        )
+        return History(tuple(note["training_loss"]), tuple(note["validation"]), note["duration_s"])
 
 
 def run(

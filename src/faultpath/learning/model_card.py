@@ -9,7 +9,7 @@ import json
 import platform
 from hashlib import sha256
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
+from typing import TYPE_CHECKING, Literal, Self, TypeVar
 
 from pydantic import Field
 
@@ -18,13 +18,13 @@ from faultpath.core.files.atomic import write_file, write_text
 from faultpath.core.files.opening import contents
 from faultpath.core.files.plain import Misread, model_of
 from faultpath.core.results import Frozen
-from faultpath.core.text import extra
 from faultpath.core.version import __version__
 from faultpath.learning.repair import Repair
+from faultpath.learning.tensor_files import encoded, safetensors
 from faultpath.loop import TapCount
 
 if TYPE_CHECKING:
-    from torch import Tensor, nn
+    from torch import nn
 
 
 class Schedule(Frozen, allow_inf_nan=False):
@@ -186,7 +186,7 @@ def save(net: nn.Module, card: Card, folder: Path) -> Path:
     The bytes of the weights file depend on the weights alone.
     """
     path = folder / f"{card.stem}.safetensors"
-    write_file(path, encoded(net))
+    write_file(path, encoded(net.state_dict()))
     text = json.dumps(card.model_dump(mode="json"), indent=2, allow_nan=False)
     write_text(path.with_suffix(".json"), f"{text}\n")
     return path
@@ -220,37 +220,11 @@ def fill(net: nn.Module, path: Path, kind: type[CardKind]) -> CardKind:
     return card
 
 
-def tensors(net: nn.Module) -> dict[str, Tensor]:
-    """Return parameters and buffers by name, each with memory of its own, in row-major order."""
-    from torch import contiguous_format as rows  # safetensors takes no other order
-
-    return {
-        name: value.detach().cpu().clone(memory_format=rows)
-        for name, value in net.state_dict().items()
-    }
-
-
-def encoded(net: nn.Module) -> bytes:
-    """Return the weights as a file."""
-    return safetensors().save(tensors(net))
-
-
 def weights_sha256(net: nn.Module) -> str:
     """Return the digest of the file that the weights would make."""
-    return sha256(encoded(net)).hexdigest()
+    return sha256(encoded(net.state_dict())).hexdigest()
 
 
 def parameter_count(net: nn.Module) -> int:
     """Return how many numbers are fitted."""
     return sum(weight.numel() for weight in net.parameters() if weight.requires_grad)
-
-
-def safetensors() -> Any:
-    """Return the module that writes weights; `UserError` where it is not installed."""
-    try:
-        import safetensors.torch
-    except ModuleNotFoundError as error:
-        raise UserError(
-            f"fits are kept as safetensors, which is not installed: {extra('torch')}"
-        ) from error
-    return safetensors.torch

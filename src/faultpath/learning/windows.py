@@ -137,13 +137,7 @@ class Windows:
 
         The name of an episode decides alone, whatever else there is.
         """
-
-        def validates(name: str) -> bool:
-            digest = blake2b(name.encode(), digest_size=8, person=b"validation").digest()
-            return int.from_bytes(digest, "little") / 2**64 < validation
-
-        sides = {name: validates(name) for name in dict.fromkeys(self.episodes)}
-        held_out = np.array([sides[name] for name in self.episodes])
+        held_out = validates(self.episodes, validation)
         return np.flatnonzero(~held_out), np.flatnonzero(held_out)
 
     def learned(self, repairs: Iterable[Repair]) -> Targets:
@@ -187,6 +181,15 @@ class Windows:
     def names_sha256(self, index: HostArray) -> str:
         """Return a digest of the names of some windows, in this order."""
         return sha256("\n".join(self.ids[int(i)] for i in index).encode()).hexdigest()
+
+
+def validates(episodes: Sequence[str], share: float) -> HostArray:
+    """Return whether each window is one of validation, by the name of its episode."""
+    draws: dict[str, float] = {}
+    for name in dict.fromkeys(episodes):
+        digest = blake2b(name.encode(), digest_size=8, person=b"validation").digest()
+        draws[name] = int.from_bytes(digest, "little") / 2**64
+    return np.array([draws[name] < share for name in episodes], dtype=bool)
 
 
 def delivered(

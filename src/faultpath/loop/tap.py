@@ -59,10 +59,9 @@ class Corruption:
         if ask not in self._memories:
             self._memories[ask] = doing.begin(reading, at)
         value, self._memories[ask] = doing.apply(reading, self._memories[ask], at)
-        prefix = f"fault on channel '{fault.channel}': {doing.kind}"
         if value is not reading and (value.dtype != reading.dtype or value.shape != reading.shape):
             raise UserError(
-                f"{prefix} turns {reading.dtype} {list(reading.shape)} into {value.dtype} "
+                f"{self._prefix} turns {reading.dtype} {list(reading.shape)} into {value.dtype} "
                 f"{list(value.shape)}; choose one that keeps them"
             )
         weight = fault.weight(step)
@@ -70,9 +69,14 @@ class Corruption:
             return (value, True) if weight else (reading, False)
         if not namespace(reading).isdtype(reading.dtype, "real floating"):
             raise UserError(
-                f"{prefix} cannot recover step by step in {reading.dtype}; leave recovery out"
+                f"{self._prefix} cannot recover step by step in {reading.dtype}; leave recovery out"
             )
         return reading + (value - reading) * weight, True
+
+    @property
+    def _prefix(self) -> str:
+        """Beginning of messages."""
+        return f"fault on channel '{self.fault.channel}': {self.fault.intervention.kind}"
 
 
 @dataclass(slots=True, eq=False)
@@ -89,8 +93,6 @@ class Tap:
     deliveries: int = 0
     asks: int = 0
     """Answers of a query, over all steps."""
-    ask: int = 0
-    """Answers of a query in the last step, which number its next one."""
     last_step: int = -1
     value: Array = None
     """The value of the step's reading."""

@@ -1,8 +1,9 @@
 """Taps: the only place where a source's reading becomes what a reader gets."""
 
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
+from itertools import count
 from types import MappingProxyType
 from typing import Any
 
@@ -152,8 +153,7 @@ class Taps:
             tap.deliveries += 1
             tap.value = value
             if isinstance(value, Query):
-                tap.ask = 0
-                got = partial(self._answer, tap, value, step)
+                got = partial(self._answer, tap, value, step, count())
             else:
                 got = self._corrupted(tap, value, step) if tap.corruptions else value
                 if isinstance(got, np.ndarray):
@@ -170,15 +170,18 @@ class Taps:
             self._observer.delivered(tap, reading, step, tap.cached)
         return tap.cached
 
-    def _answer(self, tap: Tap, query: Query, step: int, request: Any) -> Any:
+    def _answer(
+        self, tap: Tap, query: Query, step: int, numbers: Iterator[int], request: Any
+    ) -> Any:
+        """Answer a request to a query; `numbers` count those of its step."""
         if step != tap.last_step:
             raise MalformedReading(
                 f"tap {tap}: the query of step {step} was asked in step {tap.last_step}; ask what "
                 "was delivered in this step"
             )
         answer = read_only(query.answer(request))
-        ask, first = tap.ask, not tap.asks
-        tap.ask, tap.asks = ask + 1, tap.asks + 1
+        ask, first = next(numbers), not tap.asks
+        tap.asks += 1
         got = answer
         if first or tap.corruptions or tap.guard:
             clean = value = query.value(answer)

@@ -3,7 +3,7 @@
 from faultpath.core.error_source import explained, located
 from faultpath.core.errors import Notice, Stopped, SystemMistake, UserError
 from faultpath.core.files.opening import LARGEST_TEXT, contents
-from faultpath.core.files.plain import Misread, model_of, read_json
+from faultpath.core.files.plain import Misread, read_json
 from faultpath.core.results import Frozen
 from faultpath.core.streams import generator, key, words
 from faultpath.core.text import listed, one_line, unknown
@@ -30,7 +30,6 @@ __all__ = [
     "load_parts",
     "located",
     "misfit_of",
-    "model_of",
     "one_line",
     "one_thread",
     "read_json",

@@ -10,7 +10,8 @@ from faultpath.learning.model_card import (
     save,
     weights_sha256,
 )
-from faultpath.learning.windows import window_taps
+from faultpath.learning.tensor_files import encoded, read_note, read_tensors
+from faultpath.learning.windows import validates, window_taps
 
 __all__ = [
     "Card",
@@ -18,12 +19,16 @@ __all__ = [
     "FitTask",
     "Journal",
     "Schedule",
+    "encoded",
     "fill",
     "minibatches",
     "parameter_count",
     "read_card",
+    "read_note",
+    "read_tensors",
     "run",
     "save",
+    "validates",
     "weights_sha256",
     "window_taps",
 ]

@@ -74,8 +74,8 @@ def adding(source: ReportInput, pairs: Sequence[Pair]) -> Adding | None:
 
     `None` where the system names no errors, or nothing was recorded.
     """
-    groups = by_scene(pairs)
-    for at in choose(source.record, pairs) if source.signals else ():
+    groups, recorded = by_scene(pairs), {(at.scene, at.seed) for at in source.signals}
+    for at in choose(source.record, pairs, recorded) if recorded else ():
         example = _of(source, at[0], groups[at])
         if example is not None:
             return example
@@ -101,7 +101,7 @@ def _of(source: ReportInput, scene: str, pairs: Mapping[str, Pair]) -> Adding | 
             if trial and numbers and len(known) == 3 and known[-1].name == TOGETHER:
                 terms = known
                 values = np.array([signal.values[:, 0] for signal in known], np.float64)
-                ended = f"{wording.ended(question, trial.status)}, {trial.time_s:.1f} s"
+                ended = f"{wording.ended(source.record.facts, trial.status)}, {trial.time_s:.1f} s"
                 lines.append(Lines(role, name, values, trial, ended))
         if len(lines) == 2:
             conditions.append((condition.name, condition.title, tuple(lines)))

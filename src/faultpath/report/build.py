@@ -24,7 +24,7 @@ def junit(records: Sequence[DecisionRecord], conditions: Sequence[str]) -> str:
         }
         for condition in conditions:
             answer = found(record, condition)
-            cases[f"no-{condition}"] = answer.said if answer else ""
+            cases[f"no-{condition}"] = answer.reason if answer else ""
         suite = ElementTree.SubElement(
             root,
             "testsuite",
@@ -49,7 +49,7 @@ def summary(records: Sequence[DecisionRecord], conditions: Sequence[str]) -> str
         parts.append(f"### {markdown(record.headline)}")
         wrong = {condition: found(record, condition) for condition in conditions}
         marks = [
-            f"- **{'fails' if answer else 'passes'}** `{name}`: {markdown(answer.said)}"
+            f"- **{'fails' if answer else 'passes'}** `{name}`: {markdown(answer.reason)}"
             for name, answer in wrong.items()
         ]
         parts += ["\n".join(marks)] if marks else []

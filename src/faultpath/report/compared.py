@@ -10,8 +10,8 @@ from pathlib import Path
 
 from faultpath.analyses.contrasts import effect_name
 from faultpath.analyses.effects import Effect
+from faultpath.analyses.facts import ComparisonFacts, Question
 from faultpath.analyses.model import CORRECT, SHARED
-from faultpath.analyses.question import Question
 from faultpath.analyses.record import DecisionRecord
 from faultpath.analyses.sentences import phrases, wording
 from faultpath.analyses.sweep import decide_sizes
@@ -48,9 +48,14 @@ class Compared:
         return self.source.provenance
 
     @property
-    def asked(self) -> Question:
+    def question(self) -> Question:
         """Question of the audit."""
         return self.record.question
+
+    @property
+    def facts(self) -> ComparisonFacts:
+        """What its system told."""
+        return self.record.facts
 
     def effect(self, condition: str) -> Effect | None:
         """Return its effect under a condition, as decided beside the others; `None` where it has
@@ -90,7 +95,7 @@ def titles(runs: Sequence[Compared]) -> dict[str, str]:
         for condition in run.record.conditions
     }
     order = {condition.name: None for run in runs for condition in run.record.conditions}
-    primaries = {run.asked.primary for run in runs}
+    primaries = {run.facts.primary for run in runs}
     return {
         condition: f"{by_condition[condition]} (primary)"
         if primaries == {condition}
@@ -110,22 +115,22 @@ def _side_by_side(columns: Sequence[Mapping[str, str]], absent: str) -> dict[str
     return {key: tuple(values.get(key, absent) for values in columns) for key in keys}
 
 
-def _asked(runs: Sequence[Compared]) -> dict[str, tuple[str, ...]]:
+def _question(runs: Sequence[Compared]) -> dict[str, tuple[str, ...]]:
     facts = [
         {
-            "Fault": run.asked.fault,
-            "Baseline": run.asked.baseline,
-            "Repair": run.asked.repair,
-            "System": run.asked.system,
-            "Library": run.asked.library,
-            "State of the library": run.asked.library_hash[:_DIGITS],
+            "Fault": str(run.question.fault),
+            "Baseline": run.question.baseline,
+            "Repair": run.question.repair,
+            "System": run.facts.system,
+            "Library": run.facts.library,
+            "State of the library": run.facts.library_hash[:_DIGITS],
             "Scenes run": run.record.scenes_run,
             "Scenes compared": str(run.record.scenes),
-            "Seeds": ", ".join(map(str, run.asked.seeds)),
-            "Primary contrast": run.asked.primary,
-            "Intervals and tests hold for": phrases.estimand(run.asked),
+            "Seeds": ", ".join(map(str, run.facts.seeds)),
+            "Primary contrast": run.facts.primary,
+            "Intervals and tests hold for": phrases.estimand(run.question, run.facts),
             "Stopping": wording.sentence(run.record.stopping or "all scenes were run"),
-            **{f"Option {key}": value for key, value in sorted(run.asked.options.items())},
+            **{f"Option {key}": value for key, value in sorted(run.question.options.items())},
         }
         for run in runs
     ]
@@ -136,24 +141,24 @@ def differing(runs: Sequence[Compared]) -> Facts:
     """Return what differs between runs: what was asked first, then what ran, then on what."""
     environments = [
         {
-            "Code, data and packages": source.system_fingerprint[:_DIGITS],
-            "faultpath": source.faultpath_version,
-            "Python": source.python,
-            "Computed with": source.backend or "not said",
-            "Processor": source.processor,
-            "Platform": source.platform,
-            **{f"Package {name}": version for name, version in sorted(source.packages.items())},
+            "Code, data and packages": code.system_fingerprint[:_DIGITS],
+            "faultpath": code.faultpath_version,
+            "Python": machine.python,
+            "Computed with": machine.backend or "not said",
+            "Processor": machine.processor,
+            "Platform": machine.platform,
+            **{f"Package {name}": version for name, version in sorted(machine.packages.items())},
         }
-        for source in (run.provenance for run in runs)
+        for code, machine in ((run.provenance.code, run.provenance.machine) for run in runs)
     ]
-    facts = _asked(runs) | _side_by_side(environments, "not named")
+    facts = _question(runs) | _side_by_side(environments, "not named")
     return {title: values for title, values in facts.items() if len(set(values)) > 1}
 
 
 def labels(runs: Sequence[Compared]) -> tuple[str, ...]:
     """Return a label for each run: its number, with what of the question tells all of them apart
     if one thing does, and otherwise with its folder."""
-    apart = [values for values in _asked(runs).values() if len(set(values)) == len(runs)]
+    apart = [values for values in _question(runs).values() if len(set(values)) == len(runs)]
     texts = apart[0] if apart else tuple(Path(run.folder).name for run in runs)
     return tuple(f"{run.number}  {text}" for run, text in zip(runs, texts, strict=True))
 
@@ -161,7 +166,7 @@ def labels(runs: Sequence[Compared]) -> tuple[str, ...]:
 def swept(runs: Sequence[Compared]) -> tuple[str, tuple[float, ...]] | None:
     """Return the fault in whose size alone the questions differ, with the size in each run;
     `None` where they differ in something else."""
-    parts = [_SIZED.fullmatch(run.asked.fault) for run in runs]
+    parts = [_SIZED.fullmatch(str(run.question.fault)) for run in runs]
     groups = [part.groups() for part in parts if part]
     if len(runs) < 2 or len(groups) < len(runs) or len({(a, c) for a, _, c in groups}) > 1:
         return None
@@ -169,10 +174,10 @@ def swept(runs: Sequence[Compared]) -> tuple[str, tuple[float, ...]] | None:
         sizes = tuple(float(size) for _, size, _ in groups)
     except ValueError:
         return None
-    asked_alike = all(
-        len(set(values)) == 1 or title in _MAY_DIFFER for title, values in _asked(runs).items()
+    alike = all(
+        len(set(values)) == 1 or title in _MAY_DIFFER for title, values in _question(runs).items()
     )
-    if len(set(sizes)) < len(sizes) or not asked_alike:
+    if len(set(sizes)) < len(sizes) or not alike:
         return None
     name, _, rest = groups[0]
     return f"{name}{rest}", sizes
@@ -181,7 +186,7 @@ def swept(runs: Sequence[Compared]) -> tuple[str, tuple[float, ...]] | None:
 def same_correct_trials(runs: Sequence[Compared]) -> bool:
     """Return whether all runs saw the same of the same code under correct inputs."""
     effects = [run.effect(CORRECT) for run in runs]
-    code = {run.provenance.system_fingerprint for run in runs}
+    code = {run.provenance.code.system_fingerprint for run in runs}
     same = {(effect.value, effect.won) for effect in effects if effect}
     return None not in effects and len(same) == len(code) == 1
 

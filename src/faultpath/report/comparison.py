@@ -28,6 +28,7 @@ from faultpath.report.effects import Row, panel, shared_axis
 from faultpath.report.frame import render
 from faultpath.report.svg import tick_label
 from faultpath.report.tables import decided_for
+from faultpath.run.store.folder import OUTCOMES
 
 _LABEL = 28
 """Letters of a label on the terminal."""
@@ -37,7 +38,7 @@ def headline(runs: Sequence[Compared]) -> str:
     """Return what all sizes of a sweep answer under the primary condition; of other runs how many
     there are, and where they are decided in opposite directions."""
     if sweep := swept(runs):
-        primary = next((p for p in titles(runs) if p == runs[0].asked.primary), SHARED)
+        primary = next((p for p in titles(runs) if p == runs[0].facts.primary), SHARED)
         answer = _by_size(runs, primary, sweep[1])
         return f"{len(runs)} sizes of {sweep[0]}, {where(primary)}: {answer}"
     opposed = [
@@ -49,7 +50,7 @@ def headline(runs: Sequence[Compared]) -> str:
 
 def same(runs: Sequence[Compared]) -> str:
     """Return what to say of runs between which nothing differs."""
-    alike = len({run.provenance.outcomes_sha256 for run in runs}) == 1
+    alike = len({run.provenance.files[OUTCOMES] for run in runs}) == 1
     outcomes = "and so are the outcomes, bit for bit" if alike else "and yet outcomes differ"
     return f"Question, code, data files, packages and machine are the same, {outcomes}."
 
@@ -72,7 +73,7 @@ def sentences(runs: Sequence[Compared]) -> tuple[str, ...]:
     conclusions = conclusions or [
         "No two audits of the same versions are significant in opposite directions."
     ]
-    if len({run.asked.system for run in runs}) > 1:
+    if len({run.facts.system for run in runs}) > 1:
         conclusions += [
             "The runs are of different systems: the same name need not mean the same thing."
         ]
@@ -103,7 +104,7 @@ def _by_size(runs: Sequence[Compared], condition: str, sizes: Sequence[float]) -
     at: dict[str, list[str]] = {}
     for run, size in sorted(zip(runs, sizes, strict=True), key=lambda pair: pair[1]):
         sign = effect.sign if (effect := run.effect(condition)) else 0
-        ahead = {1: f"{run.asked.repair} ahead", -1: f"{run.asked.baseline} ahead"}
+        ahead = {1: f"{run.question.repair} ahead", -1: f"{run.question.baseline} ahead"}
         at.setdefault(ahead.get(sign, "nothing significant"), []).append(tick_label(size))
     if len(at) == 1:
         (words,) = at
@@ -122,7 +123,7 @@ def _opposite(runs: Sequence[Compared], condition: str) -> Iterator[str]:
             if _variants(run) != variants:
                 continue
             role = "repair" if effect.sign > 0 else "baseline"
-            winner = run.asked.repair if effect.sign > 0 else run.asked.baseline
+            winner = run.question.repair if effect.sign > 0 else run.question.baseline
             aside = wording.reservation(effect)
             text = f"{run.number} (at the {aside})" if aside else f"{run.number}"
             sides.setdefault(winner, {}).setdefault(f"{winner} ({role})", []).append(text)
@@ -132,7 +133,7 @@ def _opposite(runs: Sequence[Compared], condition: str) -> Iterator[str]:
 
 
 def _variants(run: Compared) -> frozenset[str]:
-    return frozenset((run.asked.baseline, run.asked.repair))
+    return frozenset((run.question.baseline, run.question.repair))
 
 
 def facts_table(runs: Sequence[Compared], facts: Facts) -> Table:

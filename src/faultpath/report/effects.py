@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from faultpath.analyses.effects import Effect
+from faultpath.analyses.model import ConditionBreakEven
 from faultpath.analyses.record import DecisionRecord
 from faultpath.analyses.sentences import wording
 from faultpath.analyses.sentences.phrases import in_short
@@ -44,7 +45,7 @@ def effect_rows(record: DecisionRecord) -> list[EffectRow]:
     plot = _axis_of(record).at(6, _WIDE - 6)
     rows: list[EffectRow] = []
     for condition in record.conditions:
-        primary = "primary" if condition.name == record.question.primary else ""
+        primary = "primary" if condition.name == record.facts.primary else ""
         effect, words = effects.get(condition.name), in_short(record, effects.get(condition.name))
         svg = Svg(_WIDE, _HIGH, f"{condition.title}: repair minus baseline, pp")
         _grid(svg, plot, 0, _HIGH)
@@ -173,17 +174,16 @@ def _mark(svg: Svg, plot: Axis, effect: Effect, y: float) -> None:
 
 def frequency_panels(record: DecisionRecord, beta: bool = False) -> list[tuple[str, str]]:
     """Return the expected success difference over the frequency of the fault, or over the beta
-    factor, a picture a condition, each with what is decided.
+    factor, a picture for each condition with a break-even, and what is decided there.
 
     The band is the interval at each share, at the level that the family leaves. The thick line on
     zero is the set of shares at which neither variant is decided to be ahead, the ring the estimate
     of the crossing. The curve has the colour of a variant where a sentence names that variant.
     """
     titles = {condition.name: condition.title for condition in record.conditions}
-    shares = record.break_even_beta if beta else record.break_even
     noun = "beta" if beta else "frequency"
     over = "faults that are common cause" if beta else "episodes with the fault"
-    with_curve = [share for share in shares if share.curve]
+    with_curve = [share for share in _shares(record, beta) if _crosses(share)]
     vertical = covering(
         (v for share in with_curve for _, *ends in share.curve for v in ends), 0.06, 10
     )
@@ -219,3 +219,26 @@ def frequency_panels(record: DecisionRecord, beta: bool = False) -> list[tuple[s
             svg.text(x.start + 6, y.start - 6, "baseline better", "small baseline halo")
         panels.append((svg.render(), words))
     return panels
+
+
+def no_break_even(record: DecisionRecord, beta: bool = False) -> list[str]:
+    """Say of each other condition what is decided there."""
+    titles = {condition.name: condition.title for condition in record.conditions}
+    none = f"no {'beta' if beta else 'frequency'} is significant"
+    return [
+        f"{titles.get(share.condition, share.condition)}: "
+        f"{ahead(record.question, share, beta) or none}."
+        for share in _shares(record, beta)
+        if not _crosses(share)
+    ]
+
+
+def _shares(record: DecisionRecord, beta: bool) -> list[ConditionBreakEven]:
+    shares = record.break_even_beta if beta else record.break_even
+    return [share for share in shares if share.curve]
+
+
+def _crosses(share: ConditionBreakEven) -> bool:
+    """Return whether the estimate crosses zero, and at some share it is decided who is ahead."""
+    at = share.result.p_star
+    return at is not None and 0.0 < at < 1.0 and bool(share.result.regions)

@@ -12,7 +12,7 @@ from faultpath.analyses.sentences import phrases, wording
 from faultpath.analyses.sentences.answers import answers
 from faultpath.analyses.tables.html import html
 from faultpath.report.adding import adding, adding_panels
-from faultpath.report.effects import effect_axis, effect_rows, frequency_panels
+from faultpath.report.effects import effect_axis, effect_rows, frequency_panels, no_break_even
 from faultpath.report.frame import STYLES, render, write_pages
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pair_grid import pair_grid, pair_key
@@ -20,8 +20,10 @@ from faultpath.report.tables import (
     SHOWN,
     by_condition,
     by_threshold,
+    constant,
     ended,
     markdown_table,
+    median_time,
     secondary,
 )
 from faultpath.report.taps import fork_panel, forks
@@ -30,7 +32,7 @@ from faultpath.report.viewer import viewer_data
 
 def report_page(source: ReportInput) -> str:
     """Return the whole report as HTML: styles, scripts, pictures and data inside."""
-    record, question = source.record, source.record.question
+    record, question, facts = source.record, source.record.question, source.record.facts
     pairs, sampled = read_pairs(source.trials, record), is_sample(source.trials)
     ended_as = {
         condition.name: counts(source.trials, record, condition.name)
@@ -42,16 +44,19 @@ def report_page(source: ReportInput) -> str:
     decided = any(effect.sign for effect in record.effects)
     why = adding(source, pairs) if decided else None
     tables = (ended(record), secondary(record), by_threshold(record))
+    same = constant(record, SHOWN)
+    shown_columns = [name for name in SHOWN if name not in same]
     return render(
         "report.html.j2",
         (*STYLES, "viewer.css"),
-        ("cells.js", "viewer.js"),
+        ("cells.js", "page.js", "viewer.js"),
         record=record,
         headline=record.headline,
-        estimand=phrases.estimand(question),
-        asked=question,
+        estimand=phrases.estimand(question, facts),
+        question=question,
+        facts=facts,
         provenance=source.provenance,
-        sources=source.provenance.data if question.judged else {},
+        sources=source.provenance.code.data if facts.judged else {},
         n_trials=len(source.trials),
         conditions=titles,
         names=(question.baseline, question.repair),
@@ -67,12 +72,16 @@ def report_page(source: ReportInput) -> str:
         n_scenes=len(source.trials.scenes),
         effects=effect_rows(record),
         axis=effect_axis(record),
-        numbers=Markup(html(by_condition(record, SHOWN, "Effects; bold is significant"))),
-        fault=wording.faults(question) or "As the system defines it.",
+        numbers=Markup(html(by_condition(record, shown_columns, "Effects; bold is significant"))),
+        same=" ".join(filter(None, (*same.values(), median_time(record)))),
+        tests=phrases.tests(record),
+        fault=wording.faults(facts) or question.fault or "As the system defines it.",
         variants=list(zip(("baseline", "repair"), source.system.variants, strict=True)),
         forks=[Markup(fork_panel(fork)) for fork in forks(source)],
         frequency=[(Markup(picture), words) for picture, words in frequency_panels(record)],
+        no_frequency=no_break_even(record),
         beta=[(Markup(picture), words) for picture, words in frequency_panels(record, beta=True)],
+        no_beta=no_break_even(record, beta=True),
         grids=[
             (
                 name,
@@ -81,7 +90,7 @@ def report_page(source: ReportInput) -> str:
                         title,
                         [] if sampled else [p for p in pairs if p.condition == name],
                         ended_as[name],
-                        question.ends,
+                        facts.ends,
                         shown,
                     )
                 ),

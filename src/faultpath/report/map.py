@@ -27,7 +27,7 @@ def tables(record: MapRecord) -> tuple[Table, ...]:
 
 
 def _conditions(record: MapRecord) -> Table:
-    question = record.question
+    question, facts = record.question, record.facts
     of = {point.errors: point for point in record.points}
     lines: list[Line] = []
     for size in sorted({x or y for x, y in of if x == y or not x or not y}):
@@ -39,15 +39,15 @@ def _conditions(record: MapRecord) -> Table:
                 text = f"{wording.signed(point.difference)} {ends}"
                 entry = Entry(text=text, detected=point.sign != 0)
             entries.append(entry)
-        lines.append(line(question.said(size), *entries))
+        lines.append(line(facts.size_label(size), *entries))
     return Table(
         name="conditions",
         title=f"{question.repair} minus {question.baseline}, success, pp",
         corner="Error",
-        columns=(*(f"{name} alone" for name in question.against), "shared"),
+        columns=(*(f"{name} alone" for name in facts.modules), "shared"),
         lines=tuple(lines),
         notes=(
-            f"{wording.counted(record.scenes, 'scene')} of {question.library}, "
+            f"{wording.counted(record.scenes, 'scene')} of {facts.library}, "
             f"{wording.seeds(question.seeds)}. Intervals hold at all {len(record.points)} pairs of "
             "errors at once. Significant: the interval leaves out 0, and a sign test agrees.",
         ),
@@ -55,20 +55,20 @@ def _conditions(record: MapRecord) -> Table:
 
 
 def _flips(record: MapRecord) -> Table:
-    question = record.question
+    question, facts = record.question, record.facts
     ahead = {1: question.repair, -1: question.baseline}
     lines: list[Line] = []
     for flip in record.flips:
         kept = turned = "neither"
         if flip.start and flip.until is not None:
-            kept = f"{ahead[flip.start]}, {question.said(flip.until)}"
+            kept = f"{ahead[flip.start]}, {facts.size_label(flip.until)}"
         if flip.turned and flip.first is not None and flip.last is not None:
-            turned = f"{ahead[flip.turned]}, {question.said(flip.first)}"
-            if abs(flip.last) < question.up_to:
-                turned += f" to {question.said(flip.last)}"
+            turned = f"{ahead[flip.turned]}, {facts.size_label(flip.first)}"
+            if abs(flip.last) < facts.up_to:
+                turned += f" to {facts.size_label(flip.last)}"
         condition = SHARED if flip.condition == SHARED else f"{flip.condition} alone"
         direction = "above 0" if flip.direction > 0 else "below 0"
-        estimate = "no turn" if flip.estimate is None else question.said(flip.estimate)
+        estimate = "no turn" if flip.estimate is None else facts.size_label(flip.estimate)
         lines.append(line(condition, direction, kept, estimate, turned))
     return Table(
         name="flips",
@@ -91,7 +91,8 @@ def page(record: MapRecord, provenance: RunProvenance) -> str:
     return render(
         "map.html.j2",
         record=record,
-        asked=record.question,
+        question=record.question,
+        facts=record.facts,
         provenance=provenance,
         sentences=record.sentences,
         headline=record.headline,
@@ -100,7 +101,7 @@ def page(record: MapRecord, provenance: RunProvenance) -> str:
         flips=Markup(html(turns[0])) if turns else "",
         flips_notes=turns[0].notes if turns else (),
         conditions=Markup(html(conditions)),
-        estimand=estimand(record.question),
+        estimand=estimand(record.facts),
         conditions_notes=conditions.notes,
     )
 

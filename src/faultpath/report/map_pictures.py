@@ -28,11 +28,11 @@ _EQUAL = "0: both succeed equally often"
 def map_picture(record: MapRecord) -> Svg:
     """Return the map: who is decided to be ahead where, the estimate's zero, conditions and
     points."""
-    question, side = record.question, _SIDE
-    title = f"Reversal map of {question.system}: {question.repair} against {question.baseline}"
+    question, facts, side = record.question, record.facts, _SIDE
+    title = f"Reversal map of {facts.system}: {question.repair} against {question.baseline}"
     svg = Svg(_LEFT + side + _RIGHT, _TOP + side + 48, title, record.headline)
-    x = Axis(-question.up_to, question.up_to, _LEFT, _LEFT + side)
-    y = Axis(-question.up_to, question.up_to, _TOP + side, _TOP)
+    x = Axis(-facts.up_to, facts.up_to, _LEFT, _LEFT + side)
+    y = Axis(-facts.up_to, facts.up_to, _TOP + side, _TOP)
     hatch = svg.hatch("baseline", "range baseline", 6)
     _key(svg, record, hatch)
     _areas(svg, record, x, y, hatch)
@@ -40,7 +40,7 @@ def map_picture(record: MapRecord) -> Svg:
         f"M{number(x.start)} {number(y.start)}H{number(x.end)}V{number(y.end)}H{number(x.start)}Z",
         "inner",
     )
-    first, second = question.against
+    first, second = facts.modules
     svg.line((x(0.0), y.start), (x(0.0), y.end), "zero")
     svg.line((x.start, y(0.0)), (x.end, y(0.0)), "zero")
     svg.line((x.start, y.start), (x.end, y.end), "zero")
@@ -54,18 +54,16 @@ def map_picture(record: MapRecord) -> Svg:
     svg.path(" ".join(_zero(record, x, y)), "range")
     for point in record.points:
         at = x(point.errors[0]), y(point.errors[1])
-        svg.circle(at, 2.6, "dot" if point.sign else "dot open", tip=at_point(question, point))
+        svg.circle(at, 2.6, "dot" if point.sign else "dot open", tip=at_point(record, point))
     # What a relative error is asked as is a share, and read as percent.
-    reach, unit = (
-        (100 * question.up_to, "%") if question.relative else (question.up_to, question.unit)
-    )
+    reach, unit = (100 * facts.up_to, "%") if facts.relative else (facts.up_to, facts.unit)
     x, y = Axis(-reach, reach, x.start, x.end), Axis(-reach, reach, y.start, y.end)
     for tick in (-reach, -reach / 2, 0.0, reach / 2, reach):
         svg.line((x(tick), y.start), (x(tick), y.start + 4), "axis")
         svg.text(x(tick), y.start + 17, tick_label(tick), "small soft", "middle")
         svg.line((x.start - 4, y(tick)), (x.start, y(tick)), "axis")
         svg.text(x.start - 8, y(tick) + 4, tick_label(tick), "small soft", "end")
-    across, upward = (f"error at the {at}, {unit}".removesuffix(", 1") for at in question.against)
+    across, upward = (f"error at the {at}, {unit}".removesuffix(", 1") for at in facts.modules)
     svg.text(x(0.0), y.start + 36, across, "small soft", "middle", room=svg.width)
     svg.text(0, y.end - 38, upward, "small soft", room=svg.width)
     return svg
@@ -150,12 +148,12 @@ def _entry(svg: Svg, left: float, y: float, words: str) -> float:
 
 def correlation_picture(record: MapRecord) -> Svg:
     """Return the expected difference over the correlation, in a variant's colour where decided."""
-    joint, question = record.joint, record.question
-    description = "; ".join(f"{e.correlation:g}: {wording.plain(e.value)} pp" for e in joint.asked)
-    width = _LEFT + _SIDE + _RIGHT
-    svg = Svg(
-        width, 286, f"Expected difference over the correlation, {question.system}", description
+    joint, question, facts = record.joint, record.question, record.facts
+    description = "; ".join(
+        f"{e.correlation:g}: {wording.plain(e.value)} pp" for e in joint.requested
     )
+    width = _LEFT + _SIDE + _RIGHT
+    svg = Svg(width, 286, f"Expected difference over the correlation, {facts.system}", description)
     x = Axis(-1.0, 1.0, 40, width - 10)
     vertical = covering([end for e in joint.curve for end in (e.low, e.high)], least=10.0)
     y = vertical.at(238, 44)

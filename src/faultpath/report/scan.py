@@ -211,7 +211,8 @@ def page(record: ScanRecord, provenance: RunProvenance) -> str:
     return render(
         "scan.html.j2",
         record=record,
-        asked=record.question,
+        question=record.question,
+        facts=record.facts,
         provenance=provenance,
         n_trials=record.trials,
         versions=versions,

@@ -6,17 +6,26 @@ from faultpath.analyses.effects import Effect
 from faultpath.analyses.record import DecisionRecord
 from faultpath.analyses.sentences import phrases, wording
 from faultpath.analyses.sentences.phrases import adjusted, not_standing, only_alone
+from faultpath.analyses.sentences.wording import capital
 from faultpath.analyses.tables import MISSING, Entry, Line, Table, line
 from faultpath.analyses.tables.markdown import block
 from faultpath.stats.estimate import Estimate
 
 _VARIANTS = ("baseline", "repair")
+_MEDIAN = "median time of successes"
 DIFFERENCE = ("difference", "interval", "won")
 SHOWN = (*_VARIANTS, *DIFFERENCE, "holm", "power", "scenes", "void", "break-even")
 ALL = (
     *(*_VARIANTS, *DIFFERENCE, "p", "mcnemar", "holm", "decided"),
     *("power", "scenes", "void", "break-even", "beta"),
 )
+_MEANS = {
+    "power": "the true difference that 8 of 10 such audits would find",
+    "scenes": "scenes in which both versions have a trial",
+    "void": "pairs of trials that count for neither version",
+    "break-even": "how often the fault must occur for neither version to be ahead",
+}
+"""Sentences on quantities that say little where they are the same under every condition."""
 _BETA = (
     " Break-even beta: the same for the beta factor, the share of the module's faults that reach "
     "all modules at once."
@@ -94,12 +103,27 @@ def by_condition(record: DecisionRecord, names: Sequence[str], title: str = "") 
         line(
             title_of,
             *(_entries(record, effect)[name] for name in labels),
-            aside="primary" if effect.condition == record.question.primary else "",
+            aside="primary" if effect.condition == record.facts.primary else "",
         )
         for title_of, effect in zip(titles, record.effects, strict=True)
     ]
     columns = (label + (", %" if name in _VARIANTS else "") for name, label in labels.items())
     return Table(title=title, corner="Condition", columns=tuple(columns), lines=tuple(lines))
+
+
+def constant(record: DecisionRecord, names: Sequence[str]) -> dict[str, str]:
+    """Return which of the quantities in `names` are the same under every condition, each with a
+    sentence on it; none where there is nothing to say."""
+    of = [_entries(record, effect) for effect in record.effects]
+    same: dict[str, str] = {}
+    for name, label in _labels(record, names).items():
+        cells = (entries[name] for entries in of)
+        texts = {entry if isinstance(entry, str) else entry.text for entry in cells}
+        if name in _MEANS and len(of) > 1 and len(texts) == 1:
+            (text,) = texts
+            words = f"{label}, under every condition: {text} ({_MEANS[name]})."
+            same[name] = "" if text == MISSING else words
+    return same
 
 
 def by_quantity(
@@ -123,37 +147,38 @@ def by_quantity(
 def whole_table(record: DecisionRecord) -> Table:
     """Return every quantity of every condition, with the question as title: the table of a
     paper."""
-    question = record.question
+    question, facts = record.question, record.facts
     variants, seeds = (
         f"{question.repair} against {question.baseline}",
-        wording.seeds(question.seeds),
+        wording.seeds(facts.seeds),
     )
     title = (
-        f"{variants} on {question.system}, fault {question.fault}: {record.scenes_run} scenes of "
-        f"{question.library}, {seeds}"
+        f"{variants} on {facts.system}, fault {question.fault}: {record.scenes_run} scenes of "
+        f"{facts.library}, {seeds}"
     )
-    if question.judged:
+    if facts.judged:
         under = f", {question.fault}" if question.fault else ""
-        title = f"{variants}{under}: {record.scenes_run} {question.judged.unit}s, {seeds}"
-    corrected = f"Holm's correction is for {record.hypotheses} contrasts."
-    if (sets := len(record.break_even + record.break_even_beta)) > 1:
+        title = f"{variants}{under}: {record.scenes_run} {facts.unit}s, {seeds}"
+    corrected = f"Holm's correction is for {record.testing.hypotheses} contrasts."
+    if (sets := len(record.break_evens)) > 1:
         corrected += f" Of {sets} break-even sets each is wrong in at most 5 % of audits, one or "
         corrected += "another of them in more."
     if record.stopped is not None:
-        others = "" if record.hypotheses == 1 else ", half of it for the primary one"
+        contrasts = wording.counted(record.testing.hypotheses, "contrast")
+        others = "" if record.testing.hypotheses == 1 else ", half of it for the primary one"
         corrected = (
             f"The audit was sequential: intervals and p-values hold at whatever scene it stopped. "
-            f"{wording.counted(record.hypotheses, 'contrast')} share the error rate{others}."
+            f"{contrasts} share the error rate{others}."
         )
-    tests = f"Tests: {question.tests}. " if question.tests else ""
+    tests = f"Tests: {facts.tests}. " if facts.tests else ""
     notes = (
         f"Difference: success of {question.repair} minus success of {question.baseline}. Won:lost: "
         f"scenes in which only {question.repair} or only {question.baseline} succeeds. Break-even: "
         "the fault frequencies at which neither is shown to be ahead, with the estimate in front; "
         "any: no bound could be shown. A dash: there is nothing to compute it from."
         + (_BETA if record.break_even_beta else ""),
-        f"Primary contrast: {question.primary}. {tests}{corrected} Intervals and tests speak of "
-        f"{phrases.estimand(question)}.",
+        f"Primary contrast: {facts.primary}. {tests}{corrected} Intervals and tests speak of "
+        f"{phrases.estimand(question, facts)}.",
         *not_standing(record),
         record.headline,
     )
@@ -180,24 +205,39 @@ def ended(record: DecisionRecord) -> Table:
         lines.append(line(condition.title))
         for role, name in zip(_VARIANTS, (question.baseline, question.repair), strict=True):
             if (cell := cells.get((condition.name, name))) is not None:
-                time = cell.median_time_s
                 counts = (str(getattr(cell, status)) for status in shown)
-                median = MISSING if time is None else wording.plain(time, 2)
-                lines.append(line(name, *counts, median, aside=role))
+                time = () if median_time(record) else (_median(cell.median_time_s),)
+                lines.append(line(name, *counts, *time, aside=role))
+    time = () if median_time(record) else (f"{_MEDIAN}, s",)
     return Table(
         title="How trials ended",
         corner="Version",
-        columns=(*(question.ends.get(s, s) for s in shown), "median time of successes, s"),
+        columns=(*(record.facts.ends.get(s, s) for s in shown), *time),
         lines=tuple(lines),
     )
+
+
+def median_time(record: DecisionRecord) -> str:
+    """Say the median time of successes where all versions and conditions have the same."""
+    times = {_median(cell.median_time_s) for cell in record.cells}
+    same = len(record.cells) > 1 and len(times) == 1
+    return (
+        f"{capital(_MEDIAN)}, of each version under every condition: {min(times)} s."
+        if same
+        else ""
+    )
+
+
+def _median(time_s: float | None) -> str:
+    return MISSING if time_s is None else wording.plain(time_s, 2)
 
 
 def secondary(record: DecisionRecord) -> Table | None:
     """Return time and metrics, repair minus baseline, by condition; `None` without any."""
     question = record.question
     shown = {"time on joint successes (s)": [of.time_s for of in record.secondary]}
-    for name, metric in question.metrics.items():
-        label = f"{metric.said(name)} ({metric.unit})"
+    for name, metric in record.facts.metrics.items():
+        label = f"{metric.label(name)} ({metric.unit})"
         shown[label] = [of.metrics.get(name) for of in record.secondary]
 
     def entry(e: Estimate | None) -> str:
@@ -223,8 +263,8 @@ def by_threshold(record: DecisionRecord) -> Table | None:
     question = record.question
     if not question.metric:
         return None
-    metric = question.metrics[question.metric]
-    label = metric.said(question.metric)
+    metric = record.facts.metrics[question.metric]
+    label = metric.label(question.metric)
     sign = "≤" if metric.better == "less" else "≥"
     means: list[str] = []
     for of in record.secondary:
@@ -235,7 +275,7 @@ def by_threshold(record: DecisionRecord) -> Table | None:
         one, two = of.metric_means
         means.append(f"{one:.3g} → {two:.3g}, {wording.with_interval(difference, 3)}")
     lines = [line(f"{label} ({metric.unit})", *means)]
-    for number, at in enumerate(question.thresholds):
+    for number, at in enumerate(sorted(set(question.thresholds))):
         rates: list[str] = []
         for of in record.secondary:
             if len(of.thresholds) <= number:

@@ -69,7 +69,7 @@ def forks(source: ReportInput) -> tuple[Fork, ...]:
         for condition in record.conditions
         for tap in (*condition.faulted, *condition.baseline_faulted)
     )
-    names = tuple(dict.fromkeys([fault.channel for fault in question.faults] or faulted))
+    names = tuple(dict.fromkeys([fault.channel for fault in source.record.facts.faults] or faulted))
     reads = [
         frozenset(
             (name, reader)

@@ -37,7 +37,7 @@ def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
     success = by_quantity(record, ("baseline", "repair"))
     effects = by_condition(record, names, f"{question.repair} minus {question.baseline}")
     parts: list[RenderableType] = [Text(record.headline, style="bold")]
-    if fault := wording.faults(question):
+    if fault := wording.faults(record.facts):
         parts += [Text(f"Fault: {fault}.", style="dim")]
     if record.stopping:
         parts += [Text(f"A sequential audit: {record.stopping}.")]

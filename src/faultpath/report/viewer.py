@@ -13,8 +13,11 @@ from numpy.typing import NDArray
 from faultpath.analyses.examples import captions, choose
 from faultpath.analyses.model import SHARED
 from faultpath.analyses.pairs import Pair, by_scene, is_sample
+from faultpath.analyses.parting import Heard, parting
 from faultpath.analyses.record import DecisionRecord
 from faultpath.analyses.sentences import wording
+from faultpath.analyses.sentences.parting import DIFFERS, ending
+from faultpath.analyses.sentences.parting import parted as said
 from faultpath.report.inputs import ReportInput
 from faultpath.report.plots import Plot, first_plot, plots_of
 from faultpath.run.store.signals import DRAWN, IN_FORCE, Signal, Signals
@@ -56,7 +59,8 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
     flat, every = _flat(source, tracks), by_scene(pairs)
     recorded = {(at.scene, at.seed) for at in source.signals}
     tracked = {(at.scene, at.seed) for at, track in tracks.items() if len(track)}
-    chosen = [at for at in choose(source.record, pairs) if at in (tracked or recorded)]
+    first = choose(source.record, pairs, recorded)
+    chosen = [at for at in first if at in (tracked or recorded)]
     playable = [at for at in dict.fromkeys((*chosen, *every)) if at in (tracked or recorded)]
     few = [at for at in playable if at in recorded][:_MOST_WITH_SIGNALS]
     groups = {at: of for at, of in every.items() if at in (tracked or few)}
@@ -107,6 +111,7 @@ def _scenes(
                     "condition": pair.condition,
                     "kind": pair.kind.value,
                     "void": pair.void_reason,
+                    "parting": trials.parting(pair),
                     "baseline": trials.packed(question.baseline, pair, pair.baseline),
                     "repair": trials.packed(question.repair, pair, pair.repair),
                 }
@@ -139,7 +144,7 @@ def _first_condition(record: DecisionRecord, pairs: Mapping[str, Pair]) -> str:
         for condition, pair in pairs.items()
         if pair.sign and signs.get(condition) == pair.sign
     ]
-    primary = record.question.primary or SHARED
+    primary = record.facts.primary or SHARED
     return apart[0] if apart and primary not in apart else primary
 
 
@@ -166,7 +171,7 @@ class _Trials:
             faulted = edges.reshape(-1, 2).tolist()
         return {
             "status": trial.status.value,
-            "ended": wording.ended(self.source.record.question, trial.status),
+            "ended": wording.ended(self.source.record.facts, trial.status),
             "time_s": trial.time_s,
             "track": self._put(np.nan_to_num(track[:, :2])) if len(track) else None,
             "drawn": [self._put(named[DRAWN].values), named[DRAWN].values.shape[1]]
@@ -175,6 +180,23 @@ class _Trials:
             "lines": self._lines(named),
             "faulted": faulted,
         }
+
+    def parting(self, pair: Pair) -> dict[str, Any] | None:
+        """Return where the two trials part, in words and as steps; `None` where that was not
+        recorded of both."""
+        record, signals = self.source.record, self.source.signals
+        names = record.question.baseline, record.question.repair
+        addresses = [TrialAddress(n, pair.condition, pair.seed, pair.scene) for n in names]
+        if not all(signals.get(at) for at in addresses):
+            return None
+        one, other = (
+            Heard(at, outcome, signals[at])
+            for at, outcome in zip(addresses, (pair.baseline, pair.repair), strict=True)
+        )
+        parted = parting(self.source.system, one, other)
+        marks = [(first.step, DIFFERS[kind]) for kind, first in parted.first.items()]
+        marks += ending(parted, self.source.system.control_dt_s)
+        return {"said": said(record.facts, parted), "marks": marks}
 
     def _put(self, metres: NDArray[np.float32]) -> int:
         """Put coordinates into `series` as whole centimetres, and return where they begin."""

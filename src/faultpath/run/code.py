@@ -16,6 +16,7 @@ from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.files.opening import opened
 from faultpath.core.results import Frozen
 from faultpath.core.trees import Root, kind_of, loaded, releases, trees_of
+from faultpath.faults.kinds import installed_kinds
 from faultpath.run.plan import SystemSpec
 from faultpath.run.registry import factory_root
 from faultpath.system.checks import paths_of
@@ -170,9 +171,10 @@ def read_code(
 def system_code(system: System, spec: SystemSpec) -> Code:
     """Return the code and data that `system`, built from `spec`, runs with, in their state.
 
-    The whole trees of its sources, of its classes', of parts that the user named and of faultpath,
-    the data files that it names, and what its `fingerprint()` says. Of an object that nothing can
-    build again, that is the file of its class, or its source where it was typed into a notebook.
+    The whole trees of its sources, of its classes', of parts that the user named, of installed
+    kinds of fault and of faultpath, the data files that it names, and what its `fingerprint()`
+    says. Of an object that nothing can build again, that is the file of its class, or its source
+    where it was typed into a notebook.
     `UserError` for a data file that cannot be read.
     """
     fingerprint, root = system.fingerprint(), None if spec.is_object else factory_root(spec)
@@ -196,7 +198,8 @@ def system_code(system: System, spec: SystemSpec) -> Code:
     if root is None:
         with suppress(OSError, TypeError):
             fingerprint = inspect.getsource(type(system)) + fingerprint
-    parts = (factory_root(SystemSpec(name=str(name))) for name in paths_of(system, "parts"))
+    names = (*paths_of(system, "parts"), *installed_kinds().values())
+    parts = (factory_root(SystemSpec(name=str(name))) for name in names)
     code = read_code(
         ((root,) if root else ()) + (*classes.values(), *parts),
         data=map(Path, paths_of(system, "data_files")),

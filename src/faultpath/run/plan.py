@@ -66,8 +66,8 @@ class Study(Frozen):
     library: str
     scenes: tuple[str, ...]
     rows: tuple[Row, ...]
-    look: int = 0
-    """Scenes of a sequential study from one look at the results to the next, in the order of
+    scenes_per_analysis: int = 0
+    """Scenes of a sequential study from one analysis of the results to the next, in the order of
     `scenes`. 0 runs them all, in the blocks of their library."""
 
     def treatments(self) -> tuple[Treatment, ...]:

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field, StringConstraints
 
-from faultpath.core.results import Shown
+from faultpath.core.results import Frozen, Shown
 
 FileName = Annotated[str, StringConstraints(pattern=r"^[a-z_]+\.[a-z]+$")]
 
@@ -35,30 +35,13 @@ class Recheck(Shown):
     """The reader that wrote into its reading, where the guard saw one."""
 
 
-class RunProvenance(Shown):
-    """The conditions under which a run was made; written as `provenance.json`."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
+class RunCode(Frozen):
+    """Code and data that ran."""
 
     faultpath_version: str
     commit: str | None
+    """Of faultpath's own checkout."""
     dirty: bool | None
-    command: tuple[str, ...]
-    python: str
-    packages: dict[str, str]
-    platform: str
-    processor: str
-    backend: str = ""
-    """Name of what computed the trials, where a system says so."""
-    workers: int
-    executor: str = ""
-    """On what they were, where that is not this machine; platform and processor are this one's."""
-    started: str
-    finished: str
-    wall_s: float
-    """Wall time of the last invocation; shards kept from earlier ones are not counted."""
-    blocks_computed: int
-    blocks_kept: int
     system_fingerprint: str
     """Hash of the sources, data files and packages at the time, and of what the system says."""
     system_commit: str | None = None
@@ -69,8 +52,37 @@ class RunProvenance(Shown):
     """SHA-256 of each package that ran, and of each source in a folder of the user's."""
     data: dict[str, str] = Field(default_factory=dict[str, str])
     """SHA-256 of each data file that the system names."""
+
+
+class RunMachine(Frozen):
+    """What the code ran on."""
+
+    python: str
+    packages: dict[str, str]
+    platform: str
+    processor: str
+    backend: str = ""
+    """Name of what computed the trials, where a system says so."""
+    workers: int
+    executor: str = ""
+    """On what they were, where that is not this machine; platform and processor are this one's."""
+
+
+class RunProvenance(Shown):
+    """The conditions under which a run was made; written as `provenance.json`."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    command: tuple[str, ...]
+    code: RunCode
+    machine: RunMachine
+    started: str
+    finished: str
+    wall_s: float
+    """Wall time of the last invocation; shards kept from earlier ones are not counted."""
+    blocks_computed: int
+    blocks_kept: int
     library_hash: str
-    outcomes_sha256: str
     rechecks: tuple[Recheck, ...] = ()
     """Trials that ran a second time, to see whether results repeat."""
     files: dict[FileName, Sha256] = Field(default_factory=dict[str, str])

@@ -173,7 +173,7 @@ class Running(Execution, RepairQuestion):
     """Two variants of a system, compared in scenes, with where and how it runs."""
 
 
-class AuditQuestion(Running):
+class AuditQuestion(RepairQuestion):
     """Question that an audit answers."""
 
     panel: ClassVar[str] = "How it is tested"
@@ -204,12 +204,17 @@ class AuditQuestion(Running):
         description="With --stop-when: a difference shown to be smaller than so many percentage "
         "points ends it too.",
     )
+
+
+class AuditCall(AuditQuestion, Running):
+    """An audit that is called for: its question, and how it runs."""
+
     signals: Annotated[bool, Flag(panel=ADVANCED)] = Field(
         default=True, description="Run the report's first scenes once more to plot their signals."
     )
 
 
-class MapQuestion(Running):
+class MapQuestion(RepairQuestion):
     """Question that a reversal map answers."""
 
     panel: ClassVar[str] = "What is mapped"
@@ -240,8 +245,12 @@ class MapQuestion(Running):
     )
 
 
-class ScanRequest(Request):
-    """A variant of a system, in scenes."""
+class MapCall(MapQuestion, Running):
+    """A map that is called for: its question, and how it runs."""
+
+
+class ScanQuestion(Request):
+    """Question that a scan answers: of a variant of a system, in scenes."""
 
     panel: ClassVar[str] = "What is scanned"
 
@@ -251,7 +260,11 @@ class ScanRequest(Request):
     repair: str = Field(
         default="", description="Another variant, to scan with the same errors beside it."
     )
-    fault: Annotated[tuple[FaultText, ...], BeforeValidator(several), Flag(several=True)] = Field(
+    fault: Annotated[
+        tuple[FaultText, ...],
+        BeforeValidator(several, json_schema_input_type=FaultText | tuple[FaultText, ...]),
+        Flag(several=True),
+    ] = Field(
         default=(),
         description="Size of a source's error in place of the declared one, for both signs: "
         "`gain:scale=1.2`, `gain:offset=0.1@observer`, `calibration=0.1`.",
@@ -267,6 +280,11 @@ class ScanRequest(Request):
         default=True, description="Run trials, after ranking the sources by their readers."
     )
 
+    @property
+    def variants(self) -> tuple[str, ...]:
+        """The variants that are scanned."""
+        return (self.variant, self.repair) if self.repair else (self.variant,)
 
-class ScanQuestion(Execution, ScanRequest):
-    """Question that a scan answers."""
+
+class ScanCall(Execution, ScanQuestion):
+    """A scan that is called for: its question, and how it runs."""

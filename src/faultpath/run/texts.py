@@ -63,7 +63,17 @@ def read_names(value: object) -> object:
 _path = BeforeValidator(lambda place: Path(place) if isinstance(place, str) else place)
 _DRAWN = "Seeds of the noise, and of trained models where there are any."
 
-Names = Annotated[tuple[str, ...], BeforeValidator(read_names)]
+Names = Annotated[
+    tuple[str, ...],
+    BeforeValidator(read_names, json_schema_input_type=str | tuple[str, ...]),
+]
 Place = Annotated[Path | None, _path, PlainSerializer(lambda path: path and str(path))]
-Seeds = Annotated[tuple[int, ...], BeforeValidator(read_seeds), Field(description=_DRAWN)]
-Sizes = Annotated[tuple[float, ...], BeforeValidator(read_sizes)]
+Seeds = Annotated[
+    tuple[int, ...],
+    BeforeValidator(read_seeds, json_schema_input_type=int | str | tuple[int, ...]),
+    Field(description=_DRAWN),
+]
+Sizes = Annotated[
+    tuple[float, ...],
+    BeforeValidator(read_sizes, json_schema_input_type=float | str | tuple[float, ...]),
+]

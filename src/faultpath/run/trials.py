@@ -115,7 +115,6 @@ class Trials:
         )
 
     def __len__(self) -> int:
-        """Return the number of trials."""
         return len(self.status)
 
     def __iter__(self) -> Iterator[Trial]:

@@ -132,7 +132,7 @@ class Contrast:
         )
 
     @property
-    def side(self) -> Sign:
+    def sign_of_interval(self) -> Sign:
         """Return the side of 0 on which the whole interval lies; 0 when it touches 0."""
         low, high = self.interval or (0.0, 0.0)
         return 1 if low > 0 else -1 if high < 0 else 0
@@ -149,8 +149,12 @@ class Contrast:
         Without a test, that of the interval.
         """
         if self.test is None:
-            return self.side if self.enough else 0
-        return self.side if self.test.rejects() and self.test.leans == self.side else 0
+            return self.sign_of_interval if self.enough else 0
+        return (
+            self.sign_of_interval
+            if self.test.rejects() and self.test.leans == self.sign_of_interval
+            else 0
+        )
 
     @property
     def sign(self) -> Sign:

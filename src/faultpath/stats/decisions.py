@@ -79,7 +79,7 @@ def decide_family(
     decided: dict[str, Contrast] = {}
     for name, contrast in contrasts.items():
         leans = tests[name].leans if adjusted[name] <= alpha else 0
-        sign = leans if leans and leans == contrast.side else 0
+        sign = leans if leans and leans == contrast.sign_of_interval else 0
         if shares:
             critical = alpha * shares[name]
         else:

@@ -54,7 +54,6 @@ def look(
 
 
 def _part(source: str, observation: Any, key: str, observed: str) -> Any:
-    """Return what a key of an observation holds."""
     try:
         return observation[key]
     except KeyError:

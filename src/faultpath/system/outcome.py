@@ -30,7 +30,7 @@ class Metric(Frozen):
     title: Words = ""
     """Heading above a picture; empty for its words."""
 
-    def said(self, name: str) -> str:
+    def label(self, name: str) -> str:
         """Return its words, given its name."""
         return self.words or name.removesuffix(f"_{self.unit}").replace("_", " ")
 

@@ -30,7 +30,6 @@ class Shared:
     """Places of numbers in it that changed while `run` ran."""
 
     def __str__(self) -> str:
-        """Return a sentence."""
         sentence = f"{self.what} {'is one object ' if self.alias else ''}at {listed(self.places)}"
         return f"{sentence}; the run wrote {listed(self.written)}" if self.written else sentence
 

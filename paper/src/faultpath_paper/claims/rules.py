@@ -69,7 +69,7 @@ def detected(sign: int) -> Rule:
             return CONFIRMED if side == sign else REFUTED
         if contrast.interval is None:
             return FEW_SCENES
-        if contrast.side:
+        if contrast.sign_of_interval:
             return Judged("undecided", "the interval excludes 0, the test does not reject")
         return OPEN
 

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 from faultpath_quadrotor.system import Quadrotor
-from faultpath_quadrotor.training.pool import FlightData, join_flights, write_flights
-from faultpath_quadrotor.training.provenance import code_of
+from faultpath_quadrotor.training.pool import code_of, joined, pool_path, store
+from faultpath_quadrotor.training.recorded import FlightData
 from faultpath_quadrotor.training.trajectories import record_flights
 from faultpath_quadrotor.training.windows import HISTORY, Windows, cut, places
 from numpy.typing import NDArray
@@ -27,16 +27,15 @@ scenes; a quarter of a second between them gives about as many (derived)."""
 
 @dataclass(frozen=True)
 class Block:
-    """Consecutive scenes of a recording, and the stem of the two files that hold their flights."""
+    """Consecutive scenes of a recording, and the stem of the file that holds their flights."""
 
     recording: Recording
-    first: int
     scenes: tuple[str, ...]
     stem: str
 
     def rows(self, folder: Path) -> Path:
-        """Return the path of the file that is written last."""
-        return folder / f"{self.stem}.rows"
+        """Return the path of the file."""
+        return pool_path(folder, self.stem)
 
     def fly(self, folder: Path) -> None:
         """Fly the scenes and store the flights."""
@@ -44,8 +43,7 @@ class Block:
         system = quadrotor(recording)
         system.library(recording.library)
         flights = record_flights(system, recording.variant, self.scenes, recording.seed)
-        episodes = range(self.first, self.first + len(self.scenes))
-        write_flights(folder / self.stem, episodes, flights)
+        store(self.rows(folder), flights)
 
 
 @dataclass(frozen=True)
@@ -90,14 +88,14 @@ def blocks(recording: Recording, count: int | None) -> tuple[Block, ...]:
         part = scenes[first : first + BLOCK]
         content = repr((*decisive, first, part))
         stem = hashlib.sha256(content.encode()).hexdigest()[:24]
-        library_blocks.append(Block(recording, first, part, stem))
+        library_blocks.append(Block(recording, part, stem))
     return tuple(library_blocks)
 
 
 def recorded(blocks: Sequence[Block], folder: Path) -> Recorded:
     """Read stored blocks of one recording and cut their windows."""
-    files = join_flights([folder / block.stem for block in blocks])
-    flown = FlightData.decode(blocks[0].recording.name, *files)
+    tensors = joined(block.rows(folder) for block in blocks)
+    flown = FlightData.of(blocks[0].recording.name, tensors)
     place = places(flown, STRIDE)
     scenes = [scene for block in blocks for scene in block.scenes]
     return Recorded(

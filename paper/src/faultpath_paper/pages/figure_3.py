@@ -16,7 +16,6 @@ def cell(variant: str, error: float) -> Cell:
     return Cell(FREE, variant, faults(error), quick=error in QUICK_ERRORS)
 
 
-TITLE = "Success over the calibration error, free space"
 _PAPER = published("figure_3_free_space_sweep")
 
 
@@ -28,7 +27,7 @@ def _build(results: Results) -> Sweep:
     low, high = _PAPER["tested_range"]
     return Sweep(
         name="figure-3",
-        title=f"{TITLE} (paper, Figure 3)",
+        title="Success over the calibration error, free space (paper, Figure 3)",
         x_title="Calibration error e",
         y_title="Success (%)",
         series=tuple(
@@ -50,4 +49,4 @@ def _points(results: Results, model: str) -> tuple[Point, ...]:
     return tuple(points)
 
 
-PAGE = Page("figure-3", TITLE, (FigureSpec(_build, CELLS),))
+PAGE = Page("figure-3", (FigureSpec(_build, CELLS),))

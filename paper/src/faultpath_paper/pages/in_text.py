@@ -106,7 +106,6 @@ MECHANISM = tuple(
 
 PAGE = Page(
     "text",
-    "Results in the text",
     cells=(
         *(noisy(model, error) for model in ("wm-a", "wm-a+dcc") for error in ERRORS),
         *(noisy_wind(variant) for variant in (table_3.GRU, table_3.ZERO)),

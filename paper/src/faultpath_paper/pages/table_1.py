@@ -14,7 +14,7 @@ from faultpath_paper.entries import (
     time,
 )
 from faultpath_paper.evidence.table import Measurement, Recording
-from faultpath_paper.page import WINDOWS, Page, TableRow, TableSpec
+from faultpath_paper.page import Page, TableRow, table
 from faultpath_paper.quantities import differences
 from faultpath_paper.results import Results
 
@@ -55,7 +55,6 @@ def own_error(cell: Cell) -> Measurement:
     return Measurement(recording=recording(cell), quantity="position-error", subject=cell.variant)
 
 
-TITLE = "Prediction accuracy and closed-loop performance of four predictors"
 _PAPER = published("table_1_prediction_accuracy")
 
 
@@ -101,56 +100,23 @@ def _range(least: float, most: float) -> str:
 
 PAGE = Page(
     "table-1",
-    TITLE,
     (
-        TableSpec(
-            name="table-1",
-            title=f"{TITLE} (paper, Table I)",
-            columns=(
-                "Error, common (cm)",
-                "Error, own (cm)",
-                "Success (%)",
-                "Crash (%)",
-                "Timeout (%)",
-                "Time (s)",
-            ),
-            rows=(
-                _row("DKI", DKI),
-                _row("WM-A", WM_A),
-                _row("WM-U", WM_U),
-                _row("true-parameter", TRUE_PARAMETER),
-                TableRow("With ground-truth clearance"),
-                _row("WM-A/true-clearance", WM_A_SEEN),
-                _row("true-parameter/true-clearance", TRUE_PARAMETER_SEEN),
-            ),
-            notes=(
-                "{flown}",
-                f"{WINDOWS} Common: on trajectories flown with the true-parameter model; own: on "
-                "those that the row itself flew.",
-                "Common: {recorded}",
-                "Time: median over successful trials.",
-            ),
+        table(
+            "table-1",
+            _row("DKI", DKI),
+            _row("WM-A", WM_A),
+            _row("WM-U", WM_U),
+            _row("true-parameter", TRUE_PARAMETER),
+            TableRow("With ground-truth clearance"),
+            _row("WM-A/true-clearance", WM_A_SEEN),
+            _row("true-parameter/true-clearance", TRUE_PARAMETER_SEEN),
         ),
-        TableSpec(
-            name="table-1b",
-            title="Time on common successes, and success over seeds (paper, below Table I)",
-            columns=(
-                "Time minus WM-A (s)",
-                "95 % interval",
-                "Common successes",
-                "Success over seeds (%)",
-            ),
-            rows=(
-                TableRow("DKI", (_slower(DKI), BLANK)),
-                TableRow("WM-A", (BLANK, BLANK, BLANK, _over_seeds(WM_A, "WM-A"))),
-                TableRow("WM-U", (BLANK, BLANK, BLANK, _over_seeds(WM_U, "WM-U"))),
-                TableRow("True-parameter", (_slower(TRUE_PARAMETER), BLANK)),
-            ),
-            notes=(
-                "{flown}",
-                "Time: median over scenes in which both succeed, of the differences within a "
-                "scene; seed 0.",
-            ),
+        table(
+            "table-1b",
+            TableRow("DKI", (_slower(DKI), BLANK)),
+            TableRow("WM-A", (BLANK, BLANK, BLANK, _over_seeds(WM_A, "WM-A"))),
+            TableRow("WM-U", (BLANK, BLANK, BLANK, _over_seeds(WM_U, "WM-U"))),
+            TableRow("True-parameter", (_slower(TRUE_PARAMETER), BLANK)),
         ),
     ),
 )

@@ -5,15 +5,12 @@ from faultpath_paper.cells import SEEDS, Cell, Printed, calibration, of_seed, pu
 from faultpath_paper.entries import EntryGroup, centimetres, published_contrasts
 from faultpath_paper.evidence.table import Measurement
 from faultpath_paper.page import (
-    INTERVALS,
-    WINDOWS,
-    WINS,
     Page,
     Rows,
     TableRow,
-    TableSpec,
     differences,
     rates,
+    table,
 )
 from faultpath_paper.pages.table_1 import COMMON, STILL
 from faultpath_paper.quantities.windows import quantile
@@ -42,7 +39,6 @@ def error_under(error: float) -> Measurement:
     )
 
 
-TITLE = "Calibration errors on obstacles, and what uncertainty training recovers"
 _PAPER = published("table_2_calibration")
 _FIRST = _PAPER["WM-A_seed0"]
 
@@ -87,35 +83,21 @@ def _tail(error: float) -> EntryGroup:
 
 PAGE = Page(
     "table-2",
-    TITLE,
     (
-        TableSpec(
-            name="table-2",
-            title=f"{TITLE} (paper, Table II)",
-            columns=("e = −0.1", "e = 0", "e = +0.1"),
-            rows=(
-                *_matched(*PAIRS[0]),
-                *_matched(*PAIRS[1]),
-                TableRow("WM-A seed 0: prediction and control"),
-                TableRow(
-                    "Error, median (cm)",
-                    tuple(map(centimetres, map(error_under, ERRORS), _FIRST["error_cm"])),
-                ),
-                TableRow("Error, 90th percentile (cm)", tuple(map(_tail, ERRORS))),
-                rates(
-                    "Success (%)",
-                    (of_seed(cell("wm-a", error)) for error in ERRORS),
-                    _FIRST["success"],
-                ),
+        table(
+            "table-2",
+            *_matched(*PAIRS[0]),
+            *_matched(*PAIRS[1]),
+            TableRow("WM-A seed 0: prediction and control"),
+            TableRow(
+                "Error, median (cm)",
+                tuple(map(centimetres, map(error_under, ERRORS), _FIRST["error_cm"])),
             ),
-            notes=(
-                "{flown}",
-                "Success in percent, mean over seeds; the paper prints these means without "
-                "decimals.",
-                WINS,
-                INTERVALS,
-                f"{WINDOWS} Windows: trajectories flown with the true-parameter model; "
-                "{recorded}",
+            TableRow("Error, 90th percentile (cm)", tuple(map(_tail, ERRORS))),
+            rates(
+                "Success (%)",
+                (of_seed(cell("wm-a", error)) for error in ERRORS),
+                _FIRST["success"],
             ),
         ),
     ),

@@ -6,7 +6,7 @@ The paper averages some rows over three seeds at L3; all other entries use the f
 from faultpath.system import Status
 from faultpath_paper.cells import SEEDS, Cell, Setting, of_seed, published
 from faultpath_paper.entries import EntryGroup, Made
-from faultpath_paper.page import FLOWN_ONCE, Page, Rows, TableRow, TableSpec, rates
+from faultpath_paper.page import Page, Rows, TableRow, rates, table
 from faultpath_paper.results import Results
 
 LEVELS = ("L0", "L2", "L3")
@@ -49,7 +49,6 @@ ROWS = {
 }
 """Label and published key of every variant."""
 
-TITLE = "Success under wind, with and without obstacles"
 _PAPER = published("table_3_wind")
 _HEADINGS = {"free-space": "Free space", "obstacles": "Obstacles"}
 
@@ -92,34 +91,20 @@ def _won(row: Cell, paper: int | list[int]) -> EntryGroup:
 
 PAGE = Page(
     "table-3",
-    TITLE,
     (
-        TableSpec(
-            name="table-3",
-            title=f"{TITLE} (paper, Table III)",
-            columns=tuple(f"{level} (%)" for level in LEVELS),
-            rows=(*_levels("free-space"), *_levels("obstacles")),
-            notes=(
-                "{flown}",
-                "A figure with a decimal is a mean over seeds; the others are of seed 0. "
-                f"{FLOWN_ONCE}",
-                "At L0 the true wind is zero; those entries are the zero-input runs.",
-            ),
+        table(
+            "table-3",
+            *_levels("free-space"),
+            *_levels("obstacles"),
         ),
-        TableSpec(
-            name="table-3b",
-            title="Success at L3 in winds that the trajectory GRU has not met (paper, Table III)",
-            columns=("Free space", "Obstacles"),
-            rows=(
-                _unmet(TRAJECTORY, "trajectory-GRU_seeds"),
-                _unmet(ZERO, "zero"),
-                _unmet(TRUE, "ground-truth"),
-            ),
-            notes=(
-                f"Successes in {len(UNMET)} held-out scenes, indices {UNMET[0]} to {UNMET[-1]}, "
-                "from whose winds the trajectory GRU has not learned. Its row seed by seed; else "
-                "seed 0.",
-            ),
+        table(
+            "table-3b",
+            _unmet(TRAJECTORY, "trajectory-GRU_seeds"),
+            _unmet(ZERO, "zero"),
+            _unmet(TRUE, "ground-truth"),
+            scenes=len(UNMET),
+            first=UNMET[0],
+            last=UNMET[-1],
         ),
     ),
 )

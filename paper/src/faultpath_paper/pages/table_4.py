@@ -7,16 +7,13 @@ from faultpath.analyses.sentences import wording
 from faultpath_paper.cells import SEEDS, Cell, Printed, Setting, calibration, published
 from faultpath_paper.entries import EntryGroup, bracket, of_quantity, published_contrasts
 from faultpath_paper.page import (
-    FLOWN_ONCE,
-    INTERVALS,
-    WINS,
     Columns,
     Page,
     Rows,
     TableRow,
-    TableSpec,
     differences,
     rates,
+    table,
 )
 from faultpath_paper.quantities.differences import (
     Effect,
@@ -55,7 +52,6 @@ def change(first: str, second: str, effect: Effect) -> Quantity:
     return combined((1, shared), (-1, alone), effect=effect)
 
 
-TITLE = "Wind reconstruction under an isolated and under a shared calibration error"
 _PAPER = published("table_4_shared_calibration")
 
 
@@ -111,53 +107,36 @@ _FARTHER = _PAPER["terminal_distance_GRU+DCC_minus_GRU_m"]
 
 PAGE = Page(
     "table-4",
-    TITLE,
     (
-        TableSpec(
-            name="table-4",
-            title=f"{TITLE} (paper, Table IV)",
-            columns=("Correct (0, 0)", "Reconstruction-only (+0.1, 0)", "Shared (+0.1, +0.1)"),
-            rows=(
-                TableRow("Success (%)"),
-                *(
-                    rates(name, (cell(method, condition) for condition in CONDITIONS), _PAPER[name])
-                    for method, name in NAMES.items()
-                ),
-                *_contrast("gru+dcc", "gru"),
-                *_contrast("dob", "gru"),
-                *_contrast("dob", "gru+dcc"),
-                last_column(
-                    "DOB minus GRU, shared minus reconstruction-only (pp)",
-                    _changed("dob", "gru", succeeded, _PAPER["DOB_GRU_interaction_pp"]),
-                    "Score interval",
-                ),
-                TableRow("Terminal distance, secondary, GRU+DCC minus GRU (m)"),
-                Columns(
-                    ("Mean difference", "95 % interval"),
-                    tuple(
-                        _shown(combined((1, pair), effect=terminal_distance), pair, mean, ends, 2)
-                        for condition, mean, ends in zip(
-                            CONDITIONS, _FARTHER["mean"], _FARTHER["ci95"], strict=True
-                        )
-                        for pair in [_cells("gru+dcc", "gru", condition)]
-                    ),
-                ),
-                last_column(
-                    "Shared minus reconstruction-only (m)",
-                    _changed(
-                        "gru+dcc", "gru", terminal_distance, _FARTHER["shared_minus_isolated"], 2
-                    ),
+        table(
+            "table-4",
+            TableRow("Success (%)"),
+            *(
+                rates(name, (cell(method, condition) for condition in CONDITIONS), _PAPER[name])
+                for method, name in NAMES.items()
+            ),
+            *_contrast("gru+dcc", "gru"),
+            *_contrast("dob", "gru"),
+            *_contrast("dob", "gru+dcc"),
+            last_column(
+                "DOB minus GRU, shared minus reconstruction-only (pp)",
+                _changed("dob", "gru", succeeded, _PAPER["DOB_GRU_interaction_pp"]),
+                "Score interval",
+            ),
+            TableRow("Terminal distance, secondary, GRU+DCC minus GRU (m)"),
+            Columns(
+                ("Mean difference", "95 % interval"),
+                tuple(
+                    _shown(combined((1, pair), effect=terminal_distance), pair, mean, ends, 2)
+                    for condition, mean, ends in zip(
+                        CONDITIONS, _FARTHER["mean"], _FARTHER["ci95"], strict=True
+                    )
+                    for pair in [_cells("gru+dcc", "gru", condition)]
                 ),
             ),
-            notes=(
-                "{flown}",
-                "Columns: calibration error of the reconstruction and of the predictor. "
-                "Obstacles, wind L3. Predictor of seed 0 throughout; seeds are those of the "
-                "reconstruction.",
-                FLOWN_ONCE,
-                WINS,
-                INTERVALS,
-                "Terminal distance: all paired scenes at the end of the trial; lower is better.",
+            last_column(
+                "Shared minus reconstruction-only (m)",
+                _changed("gru+dcc", "gru", terminal_distance, _FARTHER["shared_minus_isolated"], 2),
             ),
         ),
     ),

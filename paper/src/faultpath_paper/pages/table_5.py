@@ -4,7 +4,7 @@ from faultpath.analyses.sentences import wording
 from faultpath.stats.breakeven import break_even
 from faultpath_paper.cells import published
 from faultpath_paper.entries import EntryGroup, Made, decided
-from faultpath_paper.page import INTERVALS, Page, TableRow, TableSpec
+from faultpath_paper.page import Page, TableRow, table
 from faultpath_paper.pages import table_2, table_4
 from faultpath_paper.quantities.crossing import Crossing, Repair, crossing
 from faultpath_paper.results import Results
@@ -31,7 +31,6 @@ REPAIRS: dict[str, Repair] = {
 }
 """Keys as published."""
 
-TITLE = "From which fault frequency on each repair pays"
 NO_CROSSING = "no crossing"
 ABOVE_NONE = "above none"
 
@@ -67,29 +66,13 @@ def _crossing(tradeoff: Crossing) -> str:
 
 PAGE = Page(
     "table-5",
-    TITLE,
     (
-        TableSpec(
-            name="table-5",
-            title=f"{TITLE} (paper, Table V)",
-            columns=("Δ0 (pp)", "Δf (pp)", "p* (%) [95 % interval]", "Inconclusive by score (%)"),
-            rows=(
-                _row("WM-A", "WM-A"),
-                _row("WM-U", "WM-U"),
-                _row("GRU: reconstruction only", "GRU/reconstruction-only"),
-                _row("GRU: shared with predictor", "GRU/shared"),
-            ),
-            notes=(
-                "{flown}",
-                "Success of the repair minus that of its baseline, under correct inputs (Δ0) and "
-                "under e = +0.1 (Δf). p* = −Δ0/(Δf − Δ0) is the fault frequency above which the "
-                "repair is ahead; 0 where it is nowhere behind; no crossing: behind throughout; "
-                "above none: ahead at low frequencies alone. In brackets: joint percentile "
-                "bootstrap, in which a resample without p* counts as 100. Inconclusive by score: "
-                "frequencies at which the score test finds neither significantly ahead.",
-                "Predictors without wind, GRU at wind L3.",
-                INTERVALS,
-            ),
+        table(
+            "table-5",
+            _row("WM-A", "WM-A"),
+            _row("WM-U", "WM-U"),
+            _row("GRU: reconstruction only", "GRU/reconstruction-only"),
+            _row("GRU: shared with predictor", "GRU/shared"),
         ),
     ),
 )

@@ -6,7 +6,7 @@ from faultpath.analyses.sentences import wording
 from faultpath_paper.cells import SEEDS, Cell, calibration, published
 from faultpath_paper.entries import BLANK, EntryGroup, PublishedContrast, difference, measured
 from faultpath_paper.evidence.table import Measurement
-from faultpath_paper.page import Columns, Page, TableRow, TableSpec, rates
+from faultpath_paper.page import Columns, Page, TableRow, rates, table
 from faultpath_paper.pages.table_1 import recording
 from faultpath_paper.pages.table_4 import CONDITIONS, ERROR, METHODS, NAMES, WINDY
 
@@ -73,7 +73,6 @@ def negative(method: str, condition: str) -> Cell:
     return Cell(WINDY, method, NEGATIVE[condition])
 
 
-TITLE = "How reconstruction bias and calibration error compensate"
 _ERRORS, _OFFSET = published("table_6_compensation").values()
 _WIND_TERM = _ERRORS["GRU_wind_term_only"]
 
@@ -114,60 +113,34 @@ def _negative_difference(condition: str) -> EntryGroup:
 
 PAGE = Page(
     "table-6",
-    TITLE,
     (
-        TableSpec(
-            name="table-6a",
-            title="Error of the analytic acceleration (paper, Table VI (a))",
-            columns=(
-                "(0, 0) (m/s²)",
-                "(+0.1, 0) (m/s²)",
-                "(0, +0.1) (m/s²)",
-                "(+0.1, +0.1) (m/s²)",
-            ),
-            rows=(
-                *map(_accelerations, METHODS),
-                TableRow(
-                    "GRU, wind term alone",
-                    (
-                        BLANK,
-                        _wind_term("reconstruction-only", "isolated"),
-                        BLANK,
-                        _wind_term("shared", "shared"),
-                    ),
+        table(
+            "table-6a",
+            *map(_accelerations, METHODS),
+            TableRow(
+                "GRU, wind term alone",
+                (
+                    BLANK,
+                    _wind_term("reconstruction-only", "isolated"),
+                    BLANK,
+                    _wind_term("shared", "shared"),
                 ),
-            ),
-            notes=(
-                "Columns: calibration error of the reconstruction and of the predictor.",
-                "Mean over reconstruction seeds of the median over windows; DOB has nothing to "
-                "train. Windows: flights with the GRU of seed 0 under correct inputs, obstacles at "
-                "L3. {recorded}",
-                "Wind term alone: error of the part that the wind adds to the acceleration.",
             ),
         ),
-        TableSpec(
-            name="table-6b",
-            title="Success under the negative offset (paper, Table VI (b))",
-            columns=("(0, 0)", "(−0.1, 0)", "(−0.1, −0.1)"),
-            rows=(
-                _negative_rates("gru"),
-                _negative_rates("gru+dcc"),
-                Columns(
-                    (
-                        "",
-                        "GRU+DCC minus GRU, 95 % interval (pp)",
-                        "Score interval (pp)",
-                        "GRU+DCC only:GRU only",
-                        "Exact McNemar p",
-                        "Least detectable difference (pp)",
-                    ),
-                    tuple(map(_negative_difference, NEGATIVE)),
+        table(
+            "table-6b",
+            _negative_rates("gru"),
+            _negative_rates("gru+dcc"),
+            Columns(
+                (
+                    "",
+                    "GRU+DCC minus GRU, 95 % interval (pp)",
+                    "Score interval (pp)",
+                    "GRU+DCC only:GRU only",
+                    "Exact McNemar p",
+                    "Least detectable difference (pp)",
                 ),
-            ),
-            notes=(
-                "{flown}",
-                "Columns: calibration error of the reconstruction and of the predictor, both of "
-                "seed 0; obstacles at L3.",
+                tuple(map(_negative_difference, NEGATIVE)),
             ),
         ),
     ),

@@ -7,6 +7,7 @@ from faultpath_paper.answers import ClaimVerdict, Ledger, StatementPart
 from faultpath_paper.claims import SUBJECTS
 from faultpath_paper.report.words import (
     ANSWERS,
+    BESIDE,
     KINDS,
     SHOWN,
     SIZES,
@@ -42,7 +43,8 @@ def by_subject(ledger: Ledger) -> Table:
         for subject, claims in SUBJECTS.items()
     ]
     lines.append(line("All", *_sizes(list(ledger.claims))))
-    return Table(corner="Figures of", columns=("figures", *SIZES), lines=tuple(lines))
+    columns = ("figures", *(BESIDE[size] for size in SIZES))
+    return Table(corner="Figures of", columns=columns, lines=tuple(lines))
 
 
 def _sizes(claims: list[ClaimVerdict]) -> Iterator[Entry]:

@@ -21,18 +21,27 @@ _SHOWN: dict[str, AlignMethod] = {
     "Claim": "left",
     "Result": "left",
     "Estimate": "right",
-    "Size": "left",
+    "Beside paper": "left",
     "Detectable": "right",
 }
-_PRINTED = ("What is claimed", "Kind", "Result", "Estimate", "Sizes", "Detectable", "The paper")
+_PRINTED = (
+    "What is claimed",
+    "Kind",
+    "Result",
+    "Estimate",
+    "Beside the paper",
+    "Detectable",
+    "The paper",
+)
 _IN_SHORT: dict[Size, str] = {
-    "right sign, other size": "right sign only",
+    **words.BESIDE,
+    "right sign, other size": "same direction",
     "not comparable": MISSING,
 }
+"""Words of the terminal, which has few columns."""
 _FARTHEST = (
-    "Sizes: how the estimate stands to the paper's figure, for the statement of a claim that is "
-    "farthest from it, and how many of those that can be compared stand so. No result depends on "
-    "it."
+    "Beside the paper: how our figures for the statements of a claim stand to those that the paper "
+    "prints. No result depends on it."
 )
 
 
@@ -81,7 +90,7 @@ def ledger_markdown(ledger: Ledger, profile: str) -> str:
         for claim in ledger.claims
         for entries in [_entries(claim)]
     )
-    texts = ("Kind", "Result", "Sizes", "The paper", "What is claimed")
+    texts = ("Kind", "Result", "Beside the paper", "The paper", "What is claimed")
     table = grid(Table(corner="Claim", columns=_PRINTED, lines=tuple(lines), words=texts))
     sizes = [markdown(f"{words.sizes(ledger)} {_FARTHEST}")] if words.sizes(ledger) else []
     head = f"{words.headline(ledger, profile)}.", markdown(f"{_about(ledger)}.")
@@ -95,13 +104,12 @@ def _about(ledger: Ledger) -> str:
 
 def _entries(claim: ClaimVerdict) -> dict[str, str | Entry]:
     answer = f"{words.SIGNS[claim.verdict]} {words.SHOWN[claim.verdict]}"
-    size, _, _ = words.farthest(claim)
     return {
-        "Kind": claim.kind,
+        "Kind": words.KIND[claim.kind],
         "Result": Entry(text=answer, tone=_TONES[claim.verdict]),
         "Estimate": words.estimate(claim) or MISSING,
-        "Size": _IN_SHORT.get(size, size),
-        "Sizes": words.size(claim) or MISSING,
+        "Beside paper": _IN_SHORT[words.farthest(claim)],
+        "Beside the paper": words.size(claim) or MISSING,
         "Detectable": words.least_detectable(claim) or MISSING,
         "The paper": words.typeset(claim.paper),
         "What is claimed": words.typeset(claim.claim),

@@ -1,6 +1,7 @@
 """Wording of the figures of claims, on the page and in the terminal."""
 
 import re
+from collections.abc import Sequence
 
 from faultpath.analyses.sentences import wording
 from faultpath_paper.answers import Answer, ClaimVerdict, Ledger, Size, StatementPart
@@ -22,6 +23,24 @@ ANSWERS: tuple[Answer, ...] = ("confirmed", "refuted", "undecided")
 
 SIZES: tuple[Size, ...] = ("compatible", "right sign, other size", "other size", "other sign")
 """From the nearest to the paper's figure to the farthest."""
+BESIDE: dict[Size, str] = {
+    "compatible": "agrees",
+    "right sign, other size": "same direction, different size",
+    "other size": "different size",
+    "other sign": "opposite direction",
+    "not comparable": "cannot be compared",
+}
+"""How pages call a size: what our figure is beside the paper's."""
+_COUNTED_SIZES: dict[Size, tuple[str, str]] = {
+    "compatible": ("agrees", "agree"),
+    "right sign, other size": (
+        "has the same direction but a different size",
+        "have the same direction but a different size",
+    ),
+    "other size": ("has a different size", "have a different size"),
+    "other sign": ("points in the opposite direction", "point in the opposite direction"),
+}
+"""The same of one figure and of several."""
 _HYPHEN_FOR_MINUS = re.compile(r"(?<![\w.)\]])-(?=\d)")
 _SIGNS_IN_TEXT = ((">=", "≥"), ("<=", "≤"), ("->", "→"))
 _DIGITS = {"pp": 1, "percent": 1, "cm": 1, "errors": 0, "seeds": 0}
@@ -74,11 +93,11 @@ def evidence(part: StatementPart) -> tuple[str, ...]:
     detectable = least_detectable(part)
     phrases = (
         f"{p_value} ({part.test})" if p_value and part.test else p_value or part.test,
-        detectable and f"least detectable {detectable}",
+        detectable and f"smallest detectable difference {detectable}",
         part.score
         and f"score interval {interval(part.model_copy(update={'interval': part.score}))}",
-        part.counts and f"only one succeeds in {part.counts}",
-        papers(part) and f"the paper {papers(part)}: {part.size}",
+        part.counts and f"scenes in which only one succeeds, first:second by seed, {part.counts}",
+        papers(part) and f"the paper {papers(part)}: {BESIDE[part.size]}",
         part.reason,
     )
     return tuple(phrase for phrase in phrases if phrase)
@@ -90,38 +109,44 @@ def papers(part: StatementPart) -> str:
     return estimate(part.model_copy(update=theirs)) if part.unit else ""
 
 
-def farthest(claim: ClaimVerdict) -> tuple[Size, int, int]:
-    """Return the size that is farthest from the paper's figure, of the parts that can be compared.
-
-    With it, how many parts have it, of how many that can be compared.
-    """
-    compared = [part.size for part in claim.parts if part.size in SIZES]
-    worst = SIZES[max(map(SIZES.index, compared))] if compared else "not comparable"
-    return worst, compared.count(worst), len(compared)
+def farthest(claim: ClaimVerdict) -> Size:
+    """Return the size that is farthest from the paper's figure, of the parts that have one."""
+    compared: list[Size] = [part.size for part in claim.parts if part.size in SIZES]
+    return max(compared, key=SIZES.index) if compared else "not comparable"
 
 
 def size(claim: ClaimVerdict) -> str:
-    """Return `right sign, other size, 2 of 3`; nothing where the paper prints no figure."""
-    worst, count, compared = farthest(claim)
-    if not compared:
-        return worst if any(part.paper is not None for part in claim.parts) else ""
-    return worst if compared == 1 else f"{worst}, {count} of {compared}"
+    """Return how our figures stand to the paper's; nothing where the paper prints none."""
+    sizes: list[Size] = [part.size for part in claim.parts if part.paper is not None]
+    if not sizes:
+        return ""
+    return counts(sizes) or BESIDE["not comparable"]
+
+
+def counts(sizes: Sequence[Size]) -> str:
+    """Return `2 figures agree, 1 has a different size`; nothing where none can be compared."""
+    compared = [size for size in sizes if size in SIZES]
+    clauses: list[str] = []
+    for size in SIZES:
+        if count := compared.count(size):
+            number = str(count) if clauses else wording.counted(count, "figure")
+            clauses.append(f"{number} {_COUNTED_SIZES[size][count > 1]}")
+    return ", ".join(clauses)
 
 
 def sizes(ledger: Ledger) -> str:
-    """Return in one sentence how many figures of the paper ours are compatible with."""
+    """Return in one sentence how our figures stand to those that the paper prints."""
     parts = [part for claim in ledger.claims for part in claim.parts]
-    printed = [part.size for part in parts if part.paper is not None]
-    compared = [label for label in printed if label in SIZES]
+    printed: list[Size] = [part.size for part in parts if part.paper is not None]
+    compared: list[Size] = [label for label in printed if label in SIZES]
     if not printed:
         return ""
     figures = wording.counted(len(printed), "figure")
     if not compared:
         return f"The paper prints {figures} for these claims; this run can be compared with none."
-    counts = "; ".join(f"{compared.count(label)} {label}" for label in SIZES if label in compared)
     return (
-        f"The paper prints {figures} for these claims, of which {len(compared)} can be compared: "
-        f"{counts}."
+        f"The paper prints {figures} for these claims, of which {len(compared)} can be compared "
+        f"with ours: {counts(compared)}."
     )
 
 
@@ -130,6 +155,8 @@ KINDS = {
     "platform": "properties that the simulator was matched to",
 }
 """Names of the kinds of claims: findings are tested, properties were matched beforehand."""
+KIND = {"finding": "finding", "platform": "matched property"}
+"""The same of one claim."""
 
 
 def headline(ledger: Ledger, profile: str) -> str:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 
 import torch
 from torch import Tensor
+from typing_extensions import override
 
-from faultpath.loop import Batch, Inputs, Memory, Outputs, Port
-from faultpath_quadrotor.batching import lanes_last, lanes_of, scenes_first
-from faultpath_quadrotor.choices import Fixes
+from faultpath.loop import Outputs, Port
+from faultpath_quadrotor.batching import Delivered, LaneModule
+from faultpath_quadrotor.choices import FILTERS, Fixes
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.estimators.kalman import (
     Belief,
@@ -55,7 +55,7 @@ class Filtered:
         return pose
 
 
-class ErrorStateFilter(Estimator):
+class ErrorStateFilter(LaneModule, Estimator):
     """Position, velocity, attitude and body rate from the raw sensors of `estimators.sensors`.
 
     A fix is some steps old when it arrives. The filter's belief therefore stays at that step: other
@@ -67,25 +67,19 @@ class ErrorStateFilter(Estimator):
     reads = frozenset(Port(name, AT) for name in SENSORS)
 
     def __init__(self, trust: Trust, device: torch.device = CPU) -> None:
+        super().__init__(device)
         self.trust = trust
-        self._device = device
 
-    def begin(self, batch: Batch) -> Memory:
-        """Return the lanes, and no belief yet."""
-        return lanes_of(batch, self._device), len(batch.scenes), None
+    @override
+    def compute(
+        self, readings: Delivered, step: int, memory: Filtered | None
+    ) -> tuple[Outputs, Filtered]:
+        read = {name: readings[name, AT] for name in SENSORS}
+        known = self.begun(read) if memory is None else self.taken(memory, read, step)
+        estimates = self.estimates(known, read)
+        return {STATE_SOURCES[name]: value for name, value in estimates.items()}, known
 
-    def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
-        """Take the step's readings in and return the estimates of the state, `[B, ...]`."""
-        lanes, count, past = memory
-        read = {name: lanes_last(inputs[Port(name, AT)], lanes) for name in SENSORS}
-        known = self.begun(read) if past is None else self.taken(past, read, inputs.step)
-        outputs = {
-            STATE_SOURCES[name]: scenes_first(estimate, count)
-            for name, estimate in self.said(known, read).items()
-        }
-        return outputs, (lanes, count, known)
-
-    def said(self, known: Filtered, read: Mapping[str, Tensor]) -> Mapping[str, Tensor]:
+    def estimates(self, known: Filtered, read: Mapping[str, Tensor]) -> Mapping[str, Tensor]:
         """Return the estimates `[..., L]` by channel at the step of `read`."""
         position, velocity, attitude = known.now()
         *_, before, last = read["gyroscope"]  # means over 10 ms: the present is half of that ahead
@@ -114,32 +108,9 @@ class ErrorStateFilter(Estimator):
         return Filtered(belief, tuple(later), aiding[1:], tuple(innovations))
 
 
-@dataclass(frozen=True)
-class Tuned:
-    """A shipped filter."""
-
-    description: str
-    biases: bool = True
-    doubt: float = 1.0
-
-
-FILTERS: Mapping[str, Tuned] = MappingProxyType(
-    {
-        "eskf": Tuned("a Kalman filter that estimates the biases of its inertial sensors"),
-        "eskf-no-bias": Tuned(
-            "a Kalman filter that takes its inertial sensors for unbiased", False
-        ),
-        "eskf-cautious": Tuned(
-            "a Kalman filter that takes fixes for three times as noisy", doubt=3.0
-        ),
-    }
-)
-"""The shipped filters, by the names in `choices.FILTERS`."""
-
-
 def filtering(
     name: str, fixes: Fixes = Fixes.OPTICAL, device: torch.device = CPU
 ) -> ErrorStateFilter:
     """Return a shipped filter."""
-    tuned = FILTERS[name]
-    return ErrorStateFilter(Trust(sensors(fixes), tuned.biases, tuned.doubt), device)
+    tuning = FILTERS[name]
+    return ErrorStateFilter(Trust(sensors(fixes), tuning.biases, tuning.doubt), device)

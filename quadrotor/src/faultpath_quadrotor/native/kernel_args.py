@@ -46,7 +46,9 @@ class Lent:
         return ctypes.c_void_p(self.tensor.data_ptr())
 
 
-def lend(name: str, tensor: Tensor, *shape: int, dtype: torch.dtype = torch.float32) -> Lent:
+def as_kernel_argument(
+    name: str, tensor: Tensor, *shape: int, dtype: torch.dtype = torch.float32
+) -> Lent:
     """Return `tensor` for a kernel that takes `shape` and `dtype` for granted.
 
     Raises:

@@ -7,7 +7,6 @@ sees the point `depth * ray`, where the first component of every ray is one. The
 the camera's pose when the image was taken.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from math import radians, tan
 
@@ -15,6 +14,7 @@ import torch
 from torch import Tensor
 
 from faultpath_quadrotor import so3
+from faultpath_quadrotor.state import Batched
 
 WIDTH = 64
 HEIGHT = 36
@@ -73,7 +73,7 @@ def rays() -> Tensor:
 
 
 @dataclass(frozen=True)
-class CaptureFrame:
+class CaptureFrame(Batched):
     """Where the camera was when the image was taken; S scenes.
 
     Attributes:
@@ -83,10 +83,6 @@ class CaptureFrame:
 
     position: Tensor
     rotation: Tensor
-
-    def take(self, index: Sequence[int] | Tensor) -> "CaptureFrame":
-        """Return the frames of some scenes."""
-        return CaptureFrame(self.position[:, index], self.rotation[..., index])
 
     def from_world(self, points: Tensor) -> Tensor:
         """Return world points `[3, S, N]` in the capture frame, m."""

@@ -6,7 +6,6 @@ hypernetwork: Ha, Dai and Le 2016). Its first layer is then a set of planes of t
 query costs no more than with fixed weights: what depends on the code is computed once a scene.
 """
 
-from collections.abc import Sequence
 from itertools import pairwise
 
 import torch
@@ -98,13 +97,9 @@ class ClearanceModel(nn.Module):
             nn.init.normal_(layer.bias, std=(2 / fan_in) ** 0.5, generator=generator)
 
     def encode(self, depth: Tensor) -> Tensor:
-        """Return the codes of images.
+        """Return the codes `[64, S]` of images `[S, 36, 64]`, m.
 
-        Args:
-            depth: z-depth `[S, 36, 64]`, m, float32.
-
-        Returns:
-            `[64, S]`; a scene's code has the same bits in a batch of any size.
+        A scene's code has the same bits in a batch of any size.
         """
         groups = -(-len(depth) // _GROUP)
         padded = depth.new_full((groups * _GROUP, *depth.shape[1:]), RANGE_M)
@@ -118,14 +113,10 @@ class ClearanceModel(nn.Module):
         return self.encoder(torch.stack((depth / RANGE_M, inverse), 1))
 
     def query(self, code: Tensor, points: Tensor) -> Tensor:
-        """Return the clearance at points.
+        """Return the clearance `[S, N]`, m, in [-0.3, 1], at points of the capture frame.
 
-        Args:
-            code: `[64, S]`.
-            points: In the capture frame, m, `[3, S, N]`, float32; N a multiple of 32.
-
-        Returns:
-            `[S, N]`, m, in [-0.3, 1]; a scene's values do not depend on the others.
+        `code` is `[64, S]`, `points` `[3, S, N]`, m, N a multiple of 32. A scene's values do not
+        depend on the others.
         """
         if not host_readable(points.device):
             return self.estimate(code.T, points.movedim(0, 1)).clamp_(LOWEST_M, HIGHEST_M)
@@ -135,18 +126,16 @@ class ClearanceModel(nn.Module):
             ours = [weight[scene] for weight in weights]
             for first in range(0, points.shape[2], _BLOCK):
                 block = slice(first, first + _BLOCK)
-                clearance[scene, block] = _evaluate(ours, features(points[:, scene, block]))
+                hidden = features(points[:, scene, block])
+                for weight in ours[:-1]:
+                    hidden = torch.mm(weight, hidden).clamp_min_(0)
+                clearance[scene, block] = torch.mm(ours[-1], hidden)[0]
         return clearance.clamp_(LOWEST_M, HIGHEST_M)
 
     def estimate(self, codes: Tensor, points: Tensor) -> Tensor:
-        """Return the clearance before it is bounded, for training: all scenes at once.
+        """Return the clearance `[S, N]` before it is bounded, for training: all scenes at once.
 
-        Args:
-            codes: `[S, 64]`, as from `encode_batch`.
-            points: In the capture frame, m, `[S, 3, N]`.
-
-        Returns:
-            `[S, N]`, m.
+        `codes` `[S, 64]` are those of `encode_batch`, `points` are `[S, 3, N]`, m.
         """
         hidden = features(points.movedim(1, 0)).movedim(0, 1)
         ones = torch.ones_like(hidden[:, :1])
@@ -186,10 +175,3 @@ def _with_constant(weights: Tensor) -> Tensor:
     constant = weights.new_zeros(count, 1, columns)
     constant[..., -1].fill_(1)
     return torch.cat((weights, constant), 1)
-
-
-def _evaluate(weights: Sequence[Tensor], hidden: Tensor) -> Tensor:
-    first, second, last = weights
-    hidden = torch.mm(first, hidden).clamp_min_(0)
-    hidden = torch.mm(second, hidden).clamp_min_(0)
-    return torch.mm(last, hidden)[0]

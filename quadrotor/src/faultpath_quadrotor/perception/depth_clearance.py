@@ -4,26 +4,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import torch
-from pydantic import BaseModel, ConfigDict
-from torch import Tensor, nn
+from torch import Tensor
 
+from faultpath.plugin.system import Frozen
 from faultpath_quadrotor import native
 from faultpath_quadrotor.device import CPU, host_readable
 from faultpath_quadrotor.native.kernel_args import covered, is_exactly, tell_portable, unlike
-from faultpath_quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH, CaptureFrame
-from faultpath_quadrotor.perception.clearance import INVERSE_SCALE, NEAREST_M, ClearanceModel
-from faultpath_quadrotor.perception.compiled import (
-    ClearanceBounds,
-    CompiledClearance,
-    CompiledEncoder,
-)
-from faultpath_quadrotor.perception.labels import HIGHEST_M, LOWEST_M
+from faultpath_quadrotor.perception.camera import FOCAL_PX, HEIGHT, WIDTH, CaptureFrame
+from faultpath_quadrotor.perception.clearance import ClearanceModel
+from faultpath_quadrotor.perception.compiled import CompiledClearance, CompiledEncoder
 
 
-class PerceptionSettings(BaseModel):
+class PerceptionSettings(Frozen):
     """Settings of perception (derived, docs/design/perception.md)."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     unseen_m: float = 0.3
     """Most clearance of space outside the field of view: the collision radius and 10 cm. A planner
@@ -74,26 +67,21 @@ class DepthClearance:
         self._model = model.eval()
         self._settings = settings or PerceptionSettings()
         self._captured: _Captured | None = None
-        if native.kernels_on(device) is None or not covered(self, DepthClearance):
+        kernels = native.kernels_on(device)
+        if kernels is None or not covered(self, DepthClearance):
             return
         if why := _misfit(model):
             tell_portable(f"The clearance model {type(model).__name__}", why)
             return
-        self.encoder, self.queries = _encoder(model), _queries(model, self._settings)
+        known = self._settings
+        self.encoder = CompiledEncoder(kernels, model)
+        self.queries = CompiledClearance(kernels, model, known.unseen_m, known.near_m)
 
     @torch.no_grad()
-    def capture(
-        self,
-        depth: Tensor,
-        position: Tensor,
-        rotation: Tensor,
-    ) -> None:
-        """Encode the images of all scenes: once a replan, however often it is queried.
+    def capture(self, depth: Tensor, position: Tensor, rotation: Tensor) -> None:
+        """Encode the images `[B, 36, 64]` of all scenes, m: once a replan, however often asked.
 
-        Args:
-            depth: z-depth `[B, 36, 64]`, m.
-            position: World frame, m, `[B, 3]`.
-            rotation: Body to world, `[B, 3, 3]`.
+        They were taken from positions `[B, 3]`, m, by cameras of attitudes `[B, 3, 3]`.
         """
         encode = self._model.encode if self.encoder is None else self.encoder
         self._captured = _Captured(encode(depth.float()), position.float(), rotation.float())
@@ -106,9 +94,7 @@ class DepthClearance:
         """
         if self._captured is None:
             raise RuntimeError("nothing was captured yet: call `capture` before `query`")
-        return self._shown(self._captured.take(torch.as_tensor(scenes)), points)
-
-    def _shown(self, captured: _Captured, points: Tensor) -> Tensor:
+        captured = self._captured.take(torch.as_tensor(scenes))
         if self.queries is not None:
             return self.queries(captured.code, captured.position, captured.rotation, points)
         local = captured.frame().from_world(points)
@@ -145,23 +131,3 @@ def _misfit(model: ClearanceModel) -> str:
     if any(p.dtype != torch.float32 or not host_readable(p.device) for p in model.parameters()):
         return "its weights are not float32 on the CPU"
     return ""
-
-
-def _encoder(model: ClearanceModel) -> CompiledEncoder | None:
-    kernels = native.kernels()
-    if kernels is None:
-        return None
-    layers = [m for m in model.encoder if isinstance(m, nn.Conv2d | nn.Linear)]
-    weights = [layer.weight for layer in layers]
-    biases = [layer.bias for layer in layers if layer.bias is not None]
-    return CompiledEncoder(kernels, weights, biases, (RANGE_M, NEAREST_M, INVERSE_SCALE))
-
-
-def _queries(model: ClearanceModel, settings: PerceptionSettings) -> CompiledClearance | None:
-    kernels = native.kernels()
-    if kernels is None:
-        return None
-    left, up = WIDTH / 2 / FOCAL_PX, HEIGHT / 2 / FOCAL_PX
-    bounds = ClearanceBounds(LOWEST_M, HIGHEST_M, settings.unseen_m, settings.near_m, left, up)
-    makers = [torch.cat((layer.weight, layer.bias[:, None]), 1) for layer, _ in model.makers()]
-    return CompiledClearance(kernels, makers, bounds)

@@ -12,7 +12,7 @@ that a scene's image has the same bits in a batch of any size.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import torch
 from torch import Tensor
@@ -24,7 +24,7 @@ from faultpath_quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WID
 from faultpath_quadrotor.perception.compiled import CompiledRenderer
 from faultpath_quadrotor.scenes.geometry import Geometry
 from faultpath_quadrotor.scenes.scene import Scene
-from faultpath_quadrotor.state import State
+from faultpath_quadrotor.state import Batched, State
 
 _GROUP = 16
 """Scenes drawn at once, which bounds the scratch images."""
@@ -49,7 +49,7 @@ _OFFSETS = torch.tensor([0.0, RANGE_M, 0.0, 0.0, 0.0, 0.0], dtype=torch.float64)
 
 
 @dataclass(frozen=True)
-class _View:
+class _View(Batched):
     """The solids as the cameras see them; K prisms, L scenes, float64.
 
     Attributes:
@@ -65,10 +65,6 @@ class _View:
     half: Tensor
     rounding: Tensor
     seen: Tensor
-
-    def take(self, group: slice) -> "_View":
-        """Return the view of some scenes."""
-        return _View(*(getattr(self, field.name)[..., group] for field in fields(self)))
 
     def numbers(self) -> Tensor:
         """Return eye, axes, half extents and rounding as one table, `[16, K, L]`."""
@@ -97,21 +93,14 @@ class DepthRenderer:
             self._compiled = CompiledRenderer(
                 kernels,
                 torch.cat((geometry.numbers(), self._low[None], self._high[None])),
-                (left, up),
                 torch.cat((_PLANES, _OFFSETS[:, None]), 1),
-                RANGE_M,
             )
 
     def render(self, state: State) -> Tensor:
-        """Return what the cameras of vehicles see.
+        """Return what the cameras of vehicles see, z-depth `[B, 36, 64]`, m, float32, in [0, 6].
 
-        Args:
-            state: Batch `[L]` with lane b in scene b; lanes beyond the B scenes are not drawn. Only
-                position and rotation count.
-
-        Returns:
-            z-depth `[B, 36, 64]`, m, float32, in [0, 6]: the range where nothing is nearer, zero
-            where the camera is inside a solid.
+        That is the range where nothing is nearer, and zero where the camera is inside a solid. Of
+        the state, lane b in scene b, only position and rotation count.
         """
         count = self._geometry.sign.shape[1]
         position, rotation = state.position[:, :count], state.rotation[..., :count]
@@ -143,7 +132,8 @@ class DepthRenderer:
 
         Only the device knows how many are in view.
         """
-        image = self._background(view).clamp_(0, RANGE_M)
+        arena = view.numbers()[:, 0].float()[..., None, None]
+        image = self._box(arena)[1].clamp_(0, RANGE_M)
         solids = view.numbers().float().flatten(1)[..., None, None]
         pillar = view.rounding > 0
         for visible, interval in (
@@ -155,10 +145,6 @@ class DepthRenderer:
             nearest = enter.masked_fill_(hidden, RANGE_M).unflatten(0, visible.shape).amin(0)
             torch.minimum(image, nearest, out=image)
         return image
-
-    def _background(self, view: _View) -> Tensor:
-        arena = view.numbers()[:, 0].float()[..., None, None]
-        return self._slabs(arena[0:3], arena[3:12].unflatten(0, (3, 3)), arena[12:15])[1]
 
     def _box(self, solid: Tensor) -> tuple[Tensor, Tensor]:
         eye, axes, half = solid[0:3], solid[3:12].unflatten(0, (3, 3)), solid[12:15]
@@ -192,10 +178,7 @@ class DepthRenderer:
     def _slabs(self, eye: Tensor, axes: Tensor, half: Tensor) -> tuple[Tensor, Tensor]:
         """Return the depths at which rays enter and leave all slabs |coordinate| <= half.
 
-        Args:
-            eye: Camera's coordinates, `[A, n, 1, 1]`.
-            axes: Camera's axes along each coordinate, `[A, 3, n, 1, 1]`.
-            half: Half widths, `[A, n, 1, 1]`.
+        `eye` and `half` are `[A, n, 1, 1]`, the camera's `axes` `[A, 3, n, 1, 1]`.
         """
         inverse = self._directions(axes).add_(_NOT_ZERO).reciprocal_()
         count, size = eye.shape[:2]

@@ -1,25 +1,24 @@
 """Cost that the planner minimises: goal, clearance risk, speed, heading and effort."""
 
+import ctypes
 from dataclasses import dataclass
 
 import torch
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 from torch import Tensor
 
+from faultpath.plugin.system import Frozen
 from faultpath_quadrotor import native
-from faultpath_quadrotor.native.kernel_args import covered
-from faultpath_quadrotor.planners import compiled
+from faultpath_quadrotor.native.kernel_args import Block, as_kernel_argument, covered, fields
 from faultpath_quadrotor.predictors.rollout import Rollout
 from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M
 
 
-class CostWeights(BaseModel):
+class CostWeights(Frozen):
     """Weights of the terms, per replan. Goal, risk and speed are the paper's terms.
 
     The values were matched on the selection library (`docs/design/platform.md`).
     """
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     goal: float = 8.0
     running: float = Field(default=0.4, ge=0, le=1)
@@ -57,6 +56,15 @@ def _norm(vector: Tensor) -> Tensor:
     return vector.square().sum(0).sqrt_()
 
 
+class _Weights(Block):
+    """`Weights` of `costs.cpp`."""
+
+    _fields_ = fields(
+        ctypes.c_float,
+        "running goal risk hit margin_m radius_m speed v_max_mps heading rate_effort thrust_effort",
+    )
+
+
 class NavigationCost:
     """The weighted sum of all terms."""
 
@@ -66,35 +74,43 @@ class NavigationCost:
     def __call__(self, scored: Scored) -> Tensor:
         """Return the cost `[S, K]`."""
         rollout, commands = scored.rollout, scored.commands
-        paths = compiled.Paths(
-            rollout.positions,
-            rollout.velocities,
-            rollout.final.rotation,
-            commands,
-            scored.clearance,
-            scored.goal,
-            scored.hover,
-        )
-        built = native.kernels_for(*paths)
-        if built is None or not self._has_kernel(commands):
+        steps, _, scenes, count = commands.shape
+        moved = (3, scenes, steps, count)
+        inputs = {
+            "positions": (rollout.positions, moved),
+            "velocities": (rollout.velocities, moved),
+            "rotation": (rollout.final.rotation, (3, 3, scenes, count)),
+            "commands": (commands, commands.shape),
+            "clearance": (scored.clearance, moved[1:]),
+            "goal": (scored.goal, (3, scenes)),
+            "hover": (scored.hover, (scenes,)),
+        }
+        built = native.kernels_for(*(value for value, _ in inputs.values()))
+        if built is None or not (steps and native.whole_vectors(count)):
             return self._portable(scored)
-        terms = {**self.weights.model_dump(), "radius_m": COLLISION_RADIUS_M}
-        return compiled.cost(built, terms, paths)
-
-    def _has_kernel(self, commands: Tensor) -> bool:
-        return (
-            len(commands) > 0
-            and native.whole_vectors(commands.shape[-1])
-            and covered(self, NavigationCost)
-            and covered(self.weights, CostWeights)
+        if not (covered(self, NavigationCost) and covered(self.weights, CostWeights)):
+            return self._portable(scored)
+        costs = commands.new_empty(scenes, count)
+        built.call(
+            "faultpath_cost",
+            _Weights(radius_m=COLLISION_RADIUS_M, **self.weights.model_dump()),
+            *(
+                as_kernel_argument(name, value.contiguous(), *shape)
+                for name, (value, shape) in inputs.items()
+            ),
+            *(steps, scenes, count),
+            as_kernel_argument("costs", costs, scenes, count),
         )
+        return costs
 
     def _portable(self, scored: Scored) -> Tensor:
         w = self.weights
         end = _norm(scored.rollout.final.position - scored.goal[..., None])
         way = _norm(scored.rollout.positions - scored.goal[..., None, None]).mean(1)
         cost = torch.lerp(end, way, w.running).mul_(w.goal)
-        cost += self._risk(scored.clearance)
+        free = scored.clearance - COLLISION_RADIUS_M
+        risk = (1 - free / w.margin_m).clamp_(0, 1).square_().mean(1).mul_(w.risk)
+        cost += risk.add_((free < 0).to(free.dtype).mean(1), alpha=w.hit)
         speed = _norm(scored.rollout.velocities)
         cost += (speed - w.v_max_mps).clamp_(min=0).square_().mean(1).mul_(w.speed)
         cost += self._heading(scored).mul_(w.heading)
@@ -102,12 +118,6 @@ class NavigationCost:
         hover = scored.hover[:, None]
         thrust = (scored.commands[:, 0] - hover).square_().mean(0) / hover.square()
         return cost.add_(thrust, alpha=w.thrust_effort)
-
-    def _risk(self, clearance: Tensor) -> Tensor:
-        w = self.weights
-        free = clearance - COLLISION_RADIUS_M
-        risk = (1 - free / w.margin_m).clamp_(0, 1).square_().mean(1).mul_(w.risk)
-        return risk.add_((free < 0).to(free.dtype).mean(1), alpha=w.hit)
 
     def _heading(self, scored: Scored) -> Tensor:
         """One minus the cosine between the body's x axis and the direction of travel, seen from

@@ -64,43 +64,32 @@ class Planning(Module):
 
     def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
         """Return the command, `[B, 4]`, N and rad/s; scenes that do not run get the hover."""
-        known: _Plans = memory
-        planner = self._planner
-        hover = lanes_last(inputs[HOVER], known.lanes)
-        goal = lanes_last(inputs[GOAL], known.lanes).float()
+        plans: _Plans = memory
+        batch, planner = plans.batch, self._planner
+        hover = lanes_last(inputs[HOVER], plans.lanes)
+        goal = lanes_last(inputs[GOAL], plans.lanes).float()
         idle = planner.initial_plan(hover)
-        plan = idle.clone() if known.plan is None else known.plan
+        plan = idle.clone() if plans.plan is None else plans.plan
         parts = self._chunks(tuple(_planned(inputs)))
         searches = [planner.init(plan[..., part.rows], hover[part.rows]) for part in parts]
         for iteration in range(planner.iterations):
-            candidates = Candidates(
-                len(known.batch.scenes),
-                parts,
-                tuple(
-                    planner.propose(search, self._noise(known.batch, part, inputs.step, iteration))
-                    for search, part in zip(searches, parts, strict=True)
-                ),
-            )
-            predicted: Predicted = inputs[ROLLOUT](candidates)
+            noise = (self._noise(batch, part, inputs.step, iteration) for part in parts)
+            commands = tuple(map(planner.propose, searches, noise))
+            predicted: Predicted = inputs[ROLLOUT](Candidates(len(batch.scenes), parts, commands))
             clearance = inputs[CLEARANCE](predicted)
-            searches = [
-                planner.update(
-                    search,
-                    Scored(
-                        rollout, commands, clearance[part.rows], goal[:, part.rows], search.hover
-                    ),
-                )
-                for search, part, rollout, commands in zip(
-                    searches, parts, predicted.rollouts, candidates.commands, strict=True
+            scored = [
+                Scored(rollout, drawn, clearance[part.rows], goal[:, part.rows], search.hover)
+                for part, search, rollout, drawn in zip(
+                    parts, searches, predicted.rollouts, commands, strict=True
                 )
             ]
+            searches = list(map(planner.update, searches, scored))
         command = idle[0]
         for part, search in zip(parts, searches, strict=True):
             command[:, part.rows] = search.plan[0]
             plan[..., part.rows] = shift(search.plan)
-        count = len(known.batch.scenes)
-        commanded = command[:, :count].T.double()
-        return {"commanded_action": commanded}, _Plans(known.batch, known.lanes, plan)
+        commanded = command[:, : len(batch.scenes)].T.double()
+        return {"commanded_action": commanded}, _Plans(batch, plans.lanes, plan)
 
     def _noise(self, batch: Batch, part: Chunk, step: int, iteration: int) -> Tensor:
         scenes = [batch.scenes[i] for i in part.scenes]

@@ -1,5 +1,6 @@
 """Model predictive path integral control, batched over scenes and candidates."""
 
+import ctypes
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -10,7 +11,7 @@ from torch import Tensor
 from typing_extensions import override
 
 from faultpath_quadrotor import native
-from faultpath_quadrotor.planners import compiled
+from faultpath_quadrotor.native.kernel_args import as_kernel_argument
 from faultpath_quadrotor.planners.costs import NavigationCost, Scored
 from faultpath_quadrotor.planners.sampler import BUNDLES, AutoregressiveSampler, BundledSampler
 
@@ -102,19 +103,38 @@ class MPPI(Planner):
 def mean(commands: Tensor, weights: Tensor) -> Tensor:
     """Return the mean `[H, 4, S]` of commands `[H, 4, S, K]` under weights `[S, K]`."""
     built = native.kernels_for(commands, weights)
-    if built is None or not native.whole_vectors(commands.shape[-1]):
+    steps, axes, scenes, candidates = commands.shape
+    if built is None or not native.whole_vectors(candidates):
         return (commands * weights).sum(-1)
-    return compiled.mean(built, commands, weights)
+    means = commands.new_empty(steps, axes, scenes)
+    built.call(
+        "faultpath_mean",
+        as_kernel_argument("commands", commands.contiguous(), steps, axes, scenes, candidates),
+        as_kernel_argument("weights", weights.contiguous(), scenes, candidates),
+        *(steps * axes, scenes, candidates),
+        as_kernel_argument("means", means, steps, axes, scenes),
+    )
+    return means
 
 
 def softmax(cost: Tensor, fraction: float) -> Tensor:
     """Return the weights `[S, K]` of candidates with costs `[S, K]`; see `MPPI`."""
     built = native.kernels_for(cost)
-    if built is not None and native.whole_vectors(cost.shape[1]):
-        return compiled.weights(built, cost, fraction, LEAST_TEMPERATURE)
-    half = cost.sort(dim=1).values[:, : cost.shape[1] // 2]
-    temperature = (half.std(dim=1, keepdim=True) * fraction).clamp_(min=LEAST_TEMPERATURE)
-    return torch.softmax(-cost / temperature, dim=1)
+    scenes, candidates = cost.shape
+    if built is None or not native.whole_vectors(candidates):
+        half = cost.sort(dim=1).values[:, : candidates // 2]
+        temperature = (half.std(dim=1, keepdim=True) * fraction).clamp_(min=LEAST_TEMPERATURE)
+        return torch.softmax(-cost / temperature, dim=1)
+    ranks, weights = torch.empty(candidates, dtype=torch.int32), torch.empty_like(cost)
+    built.call(
+        "faultpath_weigh",
+        as_kernel_argument("costs", cost.contiguous(), scenes, candidates),
+        (ctypes.c_float * 2)(fraction, LEAST_TEMPERATURE),
+        *(scenes, candidates),
+        as_kernel_argument("ranks", ranks, candidates, dtype=torch.int32),
+        as_kernel_argument("weights", weights, scenes, candidates),
+    )
+    return weights
 
 
 def best_bundle(weights: Tensor) -> Tensor:

@@ -1,24 +1,22 @@
 """Candidate commands around a plan."""
 
+import ctypes
 import math
 from collections.abc import Sequence
 
 import numpy as np
 import torch
-from pydantic import BaseModel, ConfigDict
 from torch import Tensor
 from typing_extensions import override
 
-from faultpath.plugin.system import generator, key, words
+from faultpath.plugin.system import Frozen, generator, key, words
 from faultpath_quadrotor import native
-from faultpath_quadrotor.planners import compiled
+from faultpath_quadrotor.native.kernel_args import as_kernel_argument
 from faultpath_quadrotor.vehicle import RATE_LIMIT_RADPS
 
 
-class SamplerSettings(BaseModel):
+class SamplerSettings(Frozen):
     """Spread of the candidates. Sources: DATT, PA-MPPI and Minarik et al. for rho and sigma."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     candidates: int = 512  # paper, Section IV-A
     horizon: int = 20  # paper, Section IV-A
@@ -57,21 +55,31 @@ class AutoregressiveSampler:
 
         The host draws, whatever device plans.
         """
-        shape = (self.settings.horizon, 4, self.settings.candidates)
+        horizon, candidates = self.settings.horizon, self.settings.candidates
         purpose = f"planner/{iteration}" if iteration else "planner"
         rho = self.settings.correlation
+        fresh = math.sqrt(1 - rho**2)
+        noise = torch.empty(horizon, 4, len(scenes), candidates)
         built = native.kernels()
-        if built is not None and native.whole_vectors(shape[2]):
+        if built is not None and native.whole_vectors(candidates):
             drawn = [words(key(purpose, scene, seed)) for scene in scenes]
             keys = torch.from_numpy(np.array(drawn, dtype=np.uint64).reshape(-1, 2))
-            kept = (rho, math.sqrt(1 - rho**2))
-            return compiled.noise(built, keys, step, (shape[0], shape[2]), kept)
-        noise = torch.empty(shape[0], 4, len(scenes), shape[2])
+            scratch = torch.empty(4 * horizon * candidates, dtype=torch.int32)
+            built.call(
+                "faultpath_noise",
+                as_kernel_argument("keys", keys, len(scenes), 2, dtype=torch.uint64),
+                *(step, horizon, len(scenes), candidates),
+                (ctypes.c_float * 2)(rho, fresh),
+                as_kernel_argument("scratch", scratch, len(scratch), dtype=torch.int32),
+                as_kernel_argument("noise", noise, *noise.shape),
+            )
+            return noise
         for i, scene in enumerate(scenes):
             draws = generator(purpose, scene, seed, step)
-            noise[:, :, i] = standard_normals(draws, math.prod(shape)).view(shape)
-        noise[1:] *= (1 - rho**2) ** 0.5
-        for h in range(1, shape[0]):
+            normals = standard_normals(draws, horizon * 4 * candidates)
+            noise[:, :, i] = normals.view(horizon, 4, candidates)
+        noise[1:] *= fresh
+        for h in range(1, horizon):
             noise[h].add_(noise[h - 1], alpha=rho)
         noise[..., 0] = 0
         return noise

@@ -2,18 +2,21 @@
 
 import ctypes
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 
 import torch
 from torch import Tensor
 
-from faultpath_quadrotor.native.kernel_args import Block, Lent, fields, lend
+from faultpath_quadrotor.native.kernel_args import Block, Lent, as_kernel_argument, fields
 from faultpath_quadrotor.native.library import Kernels
+from faultpath_quadrotor.plant.protocol import Contact, PlantState, TrialProgress
+from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import (
     COLLECTIVE_MAX_N,
+    COLLISION_RADIUS_M,
     GRAVITY_MPS2,
     MOTOR_THRUST_MAX_N,
+    PLANT_RATE_HZ,
     RATE_GAIN_PER_S,
     RATE_LIMIT_RADPS,
 )
@@ -43,9 +46,10 @@ _STANDING = {
     "running": torch.bool,
     "crashed": torch.bool,
     "time_s": torch.float64,
-    "goal_distance": torch.float64,
-    "min_clearance": torch.float64,
+    "terminal_distance_m": torch.float64,
+    "min_clearance_m": torch.float64,
 }
+"""Fields of `TrialProgress` that contact checks change, in the order of `Trial`."""
 _AIRFRAME = 15
 """Rows of `Airframe` in `plant.hpp`."""
 _SOLID = 10
@@ -66,55 +70,6 @@ class _Trial(Block):
     )
 
 
-@dataclass(frozen=True)
-class Watched:
-    """Trials that `CompiledPlant.fly` brings up to date, and their number of lanes."""
-
-    trial: _Trial
-    lanes: int
-
-
-def watch(
-    solids: Tensor,
-    goal: Tensor,
-    standing: Sequence[Tensor],
-    *,
-    radius_m: float,
-    every: int,
-    steps: int,
-    rate_hz: int,
-) -> Watched:
-    """Return the trials whose `standing` `CompiledPlant.fly` is to bring up to date.
-
-    Args:
-        solids: Prisms that may be touched, `[K, 10, L]`, rows as `Solid` of `plant_contact.hpp`.
-        goal: Where trials should end, `[3, L]`, m.
-        standing: Running, crashed, time, distance to the goal and least clearance, `[L]` each;
-            written to.
-        radius_m: The vehicle's radius.
-        every: Plant steps between two looks.
-        steps: Plant steps before the call.
-        rate_hz: Plant steps a second.
-
-    Raises:
-        ValueError: `every` is not positive.
-    """
-    if every < 1:
-        raise ValueError(f"contact is looked for every so many steps, not every {every}")
-    lanes = goal.shape[-1]
-    trial = _Trial(
-        lend("solids", solids, len(solids), _SOLID, lanes, dtype=torch.float64),
-        len(solids),
-        lend("goal", goal, 3, lanes, dtype=torch.float64),
-        *(radius_m, every, steps, rate_hz),
-        *(
-            lend(name, value, lanes, dtype=dtype)
-            for (name, dtype), value in zip(_STANDING.items(), standing, strict=True)
-        ),
-    )
-    return Watched(trial, lanes)
-
-
 class CompiledPlant:
     """Flies one batch of vehicles in float64 on the CPU."""
 
@@ -123,53 +78,60 @@ class CompiledPlant:
         self._kernels = kernels
         lanes = airframes.shape[-1]
         whole = airframes.contiguous()
-        self._airframes = lend("airframes", whole, _AIRFRAME, lanes, dtype=torch.float64)
+        self._airframes = as_kernel_argument(
+            "airframes", whole, _AIRFRAME, lanes, dtype=torch.float64
+        )
         gravity_kick = -GRAVITY_MPS2 * 0.5 * dt_s
         limits = (RATE_GAIN_PER_S, RATE_LIMIT_RADPS, COLLECTIVE_MAX_N, MOTOR_THRUST_MAX_N)
         self._law = _Law(dt_s, gravity_kick, *limits)
 
-    def fly(
-        self,
-        before: Sequence[Tensor],
-        command: Tensor,
-        winds: Tensor,
-        watched: Watched | None = None,
-    ) -> tuple[Tensor, ...]:
-        """Return the parts in `before` after one step for each of `winds`.
-
-        Args:
-            before: Position, velocity and rate `[3, L]`, rotation `[3, 3, L]` and motor thrusts
-                `[4, L]`, in the order of `Body` in `plant.hpp`.
-            command: `[4, L]`, of any precision; held.
-            winds: `[n, 3, L]`, world frame, m/s.
-            watched: From `watch`, for contact checks between the steps.
-
-        Raises:
-            RuntimeError: A tensor cannot be expanded to the lanes.
-            ValueError: It is not on the CPU, or other trials are watched.
-        """
+    def advance(
+        self, plant_state: PlantState, command: Tensor, winds: Tensor, trial: _Trial | None = None
+    ) -> PlantState:
+        """Advance one step for each of `winds`; see `Plant.advance`. Batches may be broadcast."""
         lanes = self._airframes.tensor.shape[1]
-        if watched is not None and watched.lanes != lanes:
-            raise ValueError(f"{watched.lanes} trials are watched in {lanes} lanes")
-        ready = [
-            _ready(name, part, *shape, lanes)
-            for (name, shape), part in zip(_BODY.items(), before, strict=True)
-        ]
+        before = zip(_BODY.items(), plant_state.parts, strict=True)
         ends = torch.empty(sum(_ROWS), lanes, dtype=torch.float64)
         self._kernels.call(
             "faultpath_fly",
-            *(self._law, self._airframes, _Before(*ready)),
+            *(self._law, self._airframes),
+            _Before(*(_ready(name, part, *shape, lanes) for (name, shape), part in before)),
             _ready("command", command, 4, lanes),
             _ready("winds", winds, len(winds), 3, lanes),
-            *(len(winds), lanes),
-            None if watched is None else watched.trial,
-            lend("ends", ends, sum(_ROWS), lanes, dtype=torch.float64),
+            *(len(winds), lanes, trial),
+            as_kernel_argument("ends", ends, sum(_ROWS), lanes, dtype=torch.float64),
         )
         parts = zip(ends.split(_ROWS), _BODY.values(), strict=True)
-        return tuple(part.view(*shape, lanes) for part, shape in parts)
+        *state, thrusts = (part.view(*shape, lanes) for part, shape in parts)
+        return PlantState(State(*state), thrusts)
+
+    def fly(
+        self,
+        plant_state: PlantState,
+        command: Tensor,
+        winds: Tensor,
+        contact: Contact,
+        progress: TrialProgress,
+        steps: int,
+    ) -> tuple[PlantState, TrialProgress]:
+        """Advance with contact checks between the steps; see `Plant.fly`."""
+        lanes, solids = self._airframes.tensor.shape[1], contact.solids
+        standing = {name: getattr(progress, name).clone() for name in _STANDING}
+        trial = _Trial(
+            as_kernel_argument("solids", solids, len(solids), _SOLID, lanes, dtype=torch.float64),
+            len(solids),
+            as_kernel_argument("goal", contact.goal, 3, lanes, dtype=torch.float64),
+            *(COLLISION_RADIUS_M, contact.every, steps, PLANT_RATE_HZ),
+            *(
+                as_kernel_argument(n, standing[n], lanes, dtype=dtype)
+                for n, dtype in _STANDING.items()
+            ),
+        )
+        flown = self.advance(plant_state, command, winds, trial)
+        return flown, replace(progress, **standing)
 
 
 def _ready(name: str, value: Tensor, *shape: int) -> Lent:
     if value.shape != shape:
         value = value.expand(shape)
-    return lend(name, value.double().contiguous(), *shape, dtype=torch.float64)
+    return as_kernel_argument(name, value.double().contiguous(), *shape, dtype=torch.float64)

@@ -87,14 +87,29 @@ class VehiclePlant(Plant):
 
     def sense(self, state: Flying) -> Outputs:
         """Return the readings of all scenes, without the lanes that only fill the batch up."""
-        world, count = state.world, state.world.count
+        world, count, vehicle = state.world, state.world.count, state.world.vehicle
         wind = scenes_first(world.wind_mps, count)
+        physics = Physics(
+            vehicle.inertia_kgm2,
+            vehicle.torque_scale,
+            vehicle.motor_time_constant_s,
+            vehicle.drag_kgps,
+            world.plant_state.thrusts.sum(0),
+        )
+        truth = {
+            "mass": vehicle.mass_kg,
+            "thrust_scale": vehicle.thrust_scale,
+            "position": world.state.position,
+            "velocity": world.state.velocity,
+            "attitude": world.state.rotation,
+            "body_rate": world.state.rate,
+        }
         sensed: dict[str, object] = {
             "mission_goal": scenes_first(world.goal, count),
-            "true_physics": scenes_first(_physics(world), count),
+            "true_physics": scenes_first(physics.reading(), count),
             "true_wind": wind,
             "zero_wind": torch.zeros_like(wind),
-            "vehicle": _truth(world),
+            "vehicle": {name: scenes_first(value, count) for name, value in truth.items()},
         }
         if state.camera is not None:
             here = replace(world.state, rotation=mounted(world.state.rotation))
@@ -109,7 +124,7 @@ class VehiclePlant(Plant):
 
     def advance(self, state: Flying, inputs: Inputs) -> Flying:
         """Fly one control interval under the command that reaches the actuators."""
-        state.world.advance(commanded(inputs, state.world.lanes))
+        state.world.advance(lanes_last(inputs[ACTION], state.world.lanes))
         return state
 
     @override
@@ -137,32 +152,3 @@ class VehiclePlant(Plant):
     @override
     def position(self, state: Flying) -> Tensor:
         return scenes_first(state.world.state.position, state.world.count)
-
-
-def commanded(inputs: Inputs, lanes: Tensor) -> Tensor:
-    """Return the command `[4, L]` that reaches the actuators: N and rad/s."""
-    return lanes_last(inputs[ACTION], lanes)
-
-
-def _truth(world: World) -> dict[str, Tensor]:
-    state = world.state
-    values = {
-        "mass": world.vehicle.mass_kg,
-        "thrust_scale": world.vehicle.thrust_scale,
-        "position": state.position,
-        "velocity": state.velocity,
-        "attitude": state.rotation,
-        "body_rate": state.rate,
-    }
-    return {name: scenes_first(value, world.count) for name, value in values.items()}
-
-
-def _physics(world: World) -> Tensor:
-    vehicle = world.vehicle
-    return Physics(
-        vehicle.inertia_kgm2,
-        vehicle.torque_scale,
-        vehicle.motor_time_constant_s,
-        vehicle.drag_kgps,
-        world.plant_state.thrusts.sum(0),
-    ).reading()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
 
@@ -12,7 +12,7 @@ from torch import Tensor
 
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.scenes.geometry import Geometry
-from faultpath_quadrotor.state import State
+from faultpath_quadrotor.state import Batched, State
 from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M, PLANT_RATE_HZ
 
 CONTACT_EVERY = 5
@@ -20,7 +20,7 @@ CONTACT_EVERY = 5
 
 
 @dataclass(frozen=True)
-class TrialProgress:
+class TrialProgress(Batched):
     """Where each lane's trial stands, `[L]`; a lane that is no longer running stays as it ended."""
 
     running: Tensor
@@ -29,10 +29,6 @@ class TrialProgress:
     time_s: Tensor
     terminal_distance_m: Tensor
     min_clearance_m: Tensor
-
-    def to(self, device: torch.device) -> TrialProgress:
-        """Return it on another device."""
-        return TrialProgress(*(getattr(self, field.name).to(device) for field in fields(self)))
 
 
 @dataclass(frozen=True)
@@ -90,16 +86,17 @@ class Contact:
 
 
 @dataclass(frozen=True)
-class PlantState:
+class PlantState(Batched):
     """State that a plant carries from step to step."""
 
     state: State
     thrusts: Tensor
     """Thrust of each motor in N before the thrust scale, [4, *b], in the order of `motors`."""
 
-    def take(self, index: Tensor) -> PlantState:
-        """Return the lanes that `index` (long or bool, [n]) picks from the last batch axis."""
-        return PlantState(self.state.take(index), self.thrusts[..., index])
+    @property
+    def parts(self) -> tuple[Tensor, ...]:
+        """The parts of the state, and the thrusts."""
+        return *self.state.parts, self.thrusts
 
 
 class Plant(ABC):

@@ -2,30 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import torch
 from torch import Tensor
 
 from faultpath_quadrotor import native
 from faultpath_quadrotor.native.kernel_args import covered
 from faultpath_quadrotor.plant import motors
-from faultpath_quadrotor.plant.compiled import CompiledPlant, watch
+from faultpath_quadrotor.plant.compiled import CompiledPlant
 from faultpath_quadrotor.plant.motors import RateLoop
 from faultpath_quadrotor.plant.protocol import Contact, Plant, PlantState, TrialProgress
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import (
     COLLECTIVE_MAX_N,
-    COLLISION_RADIUS_M,
     GRAVITY_MPS2,
     PLANT_DT_S,
-    PLANT_RATE_HZ,
     RATE_LIMIT_RADPS,
 )
-
-_WATCHED = ("running", "crashed", "time_s", "terminal_distance_m", "min_clearance_m")
-"""Fields of `TrialProgress` that the compiled contact checks change, in the order of `watch`."""
 
 
 class TorchPlant(Plant):
@@ -57,13 +50,19 @@ class TorchPlant(Plant):
         fits = like.ndim == 1 and like.dtype == torch.float64
         self._compiled = None
         if kernels is not None and fits and covered(self, TorchPlant):
-            self._compiled = CompiledPlant(kernels, self._airframes(), dt_s)
+            # Of the second motor: one motor tells all by symmetry.
+            own, mixing = self._acceleration[:, 1].abs(), self._loop.per_acceleration[:, 1].abs()
+            weights = torch.stack((self._left_end, self._left_mean))
+            airframes = torch.cat((own, mixing, weights, self._coupling, self._relaxed))
+            self._compiled = CompiledPlant(kernels, airframes, dt_s)
 
     def advance(self, plant_state: PlantState, command: Tensor, winds: Tensor) -> PlantState:
         """Advance as every plant does; with a kernel in one call."""
         if self._compiled is not None:
-            return _state(self._compiled.fly(_parts(plant_state), command, winds))
-        level, target = self._limit(command)
+            return self._compiled.advance(plant_state, command, winds)
+        level = 0.25 * command[0].clamp(0.0, COLLECTIVE_MAX_N)
+        rate = torch.clamp(command[1:], -self._rate_limit, self._rate_limit)
+        target = self._loop.target(rate)
         for wind_mps in winds.unbind(0):
             plant_state = self._step(plant_state, level, target, wind_mps)
         return plant_state
@@ -80,29 +79,7 @@ class TorchPlant(Plant):
         """Fly as every plant does; with a kernel in one call, contact checks among its steps."""
         if self._compiled is None:
             return super().fly(plant_state, command, winds, contact, progress, steps)
-        standing = {name: getattr(progress, name).clone() for name in _WATCHED}
-        watched = watch(
-            contact.solids,
-            contact.goal,
-            tuple(standing.values()),
-            radius_m=COLLISION_RADIUS_M,
-            every=contact.every,
-            steps=steps,
-            rate_hz=PLANT_RATE_HZ,
-        )
-        flown = self._compiled.fly(_parts(plant_state), command, winds, watched)
-        return _state(flown), replace(progress, **standing)
-
-    def _airframes(self) -> Tensor:
-        own = self._acceleration[:, 1].abs()  # of the second motor: one motor tells all by symmetry
-        mixing = self._loop.per_acceleration[:, 1].abs()
-        weights = torch.stack((self._left_end, self._left_mean))
-        return torch.cat((own, mixing, weights, self._coupling, self._relaxed))
-
-    def _limit(self, command: Tensor) -> tuple[Tensor, Tensor]:
-        level = 0.25 * command[0].clamp(0.0, COLLECTIVE_MAX_N)
-        rate = torch.clamp(command[1:], -self._rate_limit, self._rate_limit)
-        return level, self._loop.target(rate)
+        return self._compiled.fly(plant_state, command, winds, contact, progress, steps)
 
     def _step(
         self, plant_state: PlantState, level: Tensor, target: Tensor, wind_mps: Tensor
@@ -124,13 +101,3 @@ class TorchPlant(Plant):
         velocity = velocity.add_(drag).add_(kick)
         position = torch.add(state.position, state.velocity + velocity, alpha=0.5 * dt_s)
         return PlantState(State(position, velocity, rotation, rate), thrusts)
-
-
-def _parts(plant_state: PlantState) -> tuple[Tensor, ...]:
-    state = plant_state.state
-    return state.position, state.velocity, state.rotation, state.rate, plant_state.thrusts
-
-
-def _state(parts: tuple[Tensor, ...]) -> PlantState:
-    *state, thrusts = parts
-    return PlantState(State(*state), thrusts)

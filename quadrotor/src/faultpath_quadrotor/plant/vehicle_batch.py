@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
 import torch
 from torch import Tensor
 
+from faultpath_quadrotor.state import Batched
 from faultpath_quadrotor.vehicle import GRAVITY_MPS2, VehicleParameters
 
 
 @dataclass(frozen=True)
-class Vehicle:
+class Vehicle(Batched):
     """A batch of vehicles as tensors; `*b` is the batch shape."""
 
     mass_kg: Tensor
@@ -37,7 +38,7 @@ class Vehicle:
         """Return `batch` nominal vehicles (a count or a batch shape)."""
         shape = (batch,) if isinstance(batch, int) else tuple(batch)
         lanes = cls.stack([VehicleParameters()] * math.prod(shape), dtype)
-        return lanes._map(lambda x: x.view((*x.shape[:-1], *shape)))
+        return lanes.map(lambda x: x.view((*x.shape[:-1], *shape)))
 
     @classmethod
     def stack(
@@ -67,14 +68,3 @@ class Vehicle:
         """Return the command that holds a level vehicle at rest, [4, *b]."""
         thrust = self.hover_thrust_n
         return torch.cat((thrust[None], torch.zeros(3, *self.batch).to(thrust)))
-
-    def take(self, index: Tensor) -> Vehicle:
-        """Return the lanes that `index` (long or bool, [n]) picks from the last batch axis."""
-        return self._map(lambda x: x[..., index])
-
-    def to(self, target: torch.dtype | torch.device | str) -> Vehicle:
-        """Return the vehicles in another dtype or on another device."""
-        return self._map(lambda x: x.to(target))
-
-    def _map(self, change: Callable[[Tensor], Tensor]) -> Vehicle:
-        return Vehicle(**{field.name: change(getattr(self, field.name)) for field in fields(self)})

@@ -13,9 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict
 
-from faultpath.plugin.system import generator
+from faultpath.plugin.system import Frozen, generator
 from faultpath_quadrotor.vehicle import PLANT_RATE_HZ, Range
 
 Array = NDArray[np.float64]
@@ -39,10 +38,8 @@ class WindLevel:
         return math.hypot(self.mean_mps, CRUISE_MPS)
 
 
-class Winds(BaseModel):
+class Winds(Frozen):
     """How strong and how unsteady the winds are; turbulence and gust are shares of the mean."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     means_mps: tuple[float, float, float, float] = (0.0, 0.468, 0.99, 1.8)
     """Sustained speeds of L0 to L3, matched to the paper's success with and without wind input."""

@@ -11,19 +11,14 @@ from torch import Tensor
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.estimators.sensors import SAMPLES
 from faultpath_quadrotor.plant import Plant, TorchPlant
-from faultpath_quadrotor.plant.protocol import Contact, TrialProgress
+from faultpath_quadrotor.plant.protocol import Contact
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.plant.wind import Winds
 from faultpath_quadrotor.scenes.geometry import Geometry
 from faultpath_quadrotor.scenes.scene import Scene
 from faultpath_quadrotor.scenes.soundness import GOAL_RADIUS_M
 from faultpath_quadrotor.state import State, padded_lanes
-from faultpath_quadrotor.vehicle import (
-    CONTROL_DT_S,
-    CONTROL_RATE_HZ,
-    PLANT_RATE_HZ,
-    STEPS_PER_CONTROL,
-)
+from faultpath_quadrotor.vehicle import CONTROL_DT_S, CONTROL_RATE_HZ, STEPS_PER_CONTROL
 
 TIME_LIMIT_S = 12.0  # paper, Section IV-B
 CONTROL_STEPS = round(TIME_LIMIT_S * CONTROL_RATE_HZ)
@@ -48,7 +43,9 @@ class World:
     ) -> None:
         order = padded_lanes(len(scenes))
         lanes = [scenes[i] for i in order.tolist()]
-        series = _wind_series(scenes, winds or Winds(), level)[..., order]
+        air, duration = winds or Winds(), TIME_LIMIT_S + CONTROL_DT_S
+        blown = [air.series(level, scene.index, duration) for scene in scenes]
+        series = torch.from_numpy(np.stack(blown, axis=-1))[..., order]
         start = State.hover(
             _points([scene.start_m for scene in lanes]),
             torch.tensor([scene.start_yaw_rad for scene in lanes], dtype=torch.float64),
@@ -67,10 +64,13 @@ class World:
         self.passed: tuple[State, ...] = (self.state,) * (SAMPLES + 1)
         """Where `sampled`: the states of the last interval at the ends of its parts."""
         self.initial_hashes = tuple(
-            _hash(_row(start, i), scene.content_hash + self._plant.mark)
+            _hash(
+                torch.cat([part[..., i].reshape(-1) for part in start.parts]),
+                scene.content_hash + self._plant.mark,
+            )
             for i, scene in enumerate(scenes)
         )
-        self.wind_hashes = tuple(_hash(series[..., i].numpy()) for i in range(len(scenes)))
+        self.wind_hashes = tuple(_hash(series[..., i]) for i in range(len(scenes)))
 
     @property
     def state(self) -> State:
@@ -95,32 +95,17 @@ class World:
             passed.append(self.state)
         self.passed = tuple(passed)
         self.step += 1
-        self.progress = _with_arrivals(progress)
-
-
-def _with_arrivals(progress: TrialProgress) -> TrialProgress:
-    """Return the progress with arrivals: checked once a control step, as the planner acts."""
-    arrived = progress.running & (progress.terminal_distance_m <= GOAL_RADIUS_M)
-    return replace(
-        progress, running=progress.running & ~arrived, succeeded=progress.succeeded | arrived
-    )
-
-
-def _wind_series(scenes: Sequence[Scene], winds: Winds, level: str) -> Tensor:
-    duration = TIME_LIMIT_S + CONTROL_DT_S
-    series = [winds.series(level, scene.index, duration, PLANT_RATE_HZ) for scene in scenes]
-    return torch.from_numpy(np.stack(series, axis=-1))
+        # Arrivals are checked once a control step, as the planner acts.
+        arrived = progress.running & (progress.terminal_distance_m <= GOAL_RADIUS_M)
+        self.progress = replace(
+            progress, running=progress.running & ~arrived, succeeded=progress.succeeded | arrived
+        )
 
 
 def _points(points: Sequence[Sequence[float]]) -> Tensor:
     return torch.tensor(points, dtype=torch.float64).T.contiguous()
 
 
-def _row(state: State, lane: int) -> np.ndarray:
-    parts = (state.position, state.velocity, state.rotation, state.rate)
-    return torch.cat([part[..., lane].reshape(-1) for part in parts]).numpy()
-
-
-def _hash(array: np.ndarray, salt: str = "") -> str:
-    content = np.ascontiguousarray(array).tobytes() + salt.encode()
+def _hash(numbers: Tensor, salt: str = "") -> str:
+    content = numbers.contiguous().numpy().tobytes() + salt.encode()
     return hashlib.sha256(content).hexdigest()[:16]

@@ -4,7 +4,7 @@ import torch
 from torch import Tensor
 from torch.nn import functional
 
-from faultpath_quadrotor.native.kernel_args import lend
+from faultpath_quadrotor.native.kernel_args import as_kernel_argument
 from faultpath_quadrotor.native.library import kernels_for
 
 
@@ -25,10 +25,10 @@ def affine(weight: Tensor, bias: Tensor, x: Tensor, gelu: bool = False) -> Tenso
     y = torch.empty(outputs, columns)
     built.call(
         "faultpath_affine",
-        lend("weight", weight.detach().contiguous(), outputs, inputs),
-        lend("bias", bias.detach().contiguous(), outputs, 1),
-        lend("x", x.detach().contiguous(), inputs, columns),
+        as_kernel_argument("weight", weight.detach().contiguous(), outputs, inputs),
+        as_kernel_argument("bias", bias.detach().contiguous(), outputs, 1),
+        as_kernel_argument("x", x.detach().contiguous(), inputs, columns),
         *(outputs, inputs, columns, int(gelu)),
-        lend("y", y, outputs, columns),
+        as_kernel_argument("y", y, outputs, columns),
     )
     return y

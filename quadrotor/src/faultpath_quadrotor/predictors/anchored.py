@@ -1,7 +1,7 @@
 """WM-A: the kinematic integrator with learned residual accelerations inside it."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from torch import Tensor
 from typing_extensions import override
@@ -69,9 +69,6 @@ class AnchoredPredictor(Predictor):
         """Advance one interval; see `Predictor.step`."""
         latent, outputs = memory.network.roll(memory.latent, state, command, memory.mass_kg)
         bounded = outputs.tanh()
-        residual = Residual(
-            bounded[:3] * LINEAR_BOUND_MPS2,
-            bounded[3:] * ANGULAR_BOUND_RADPS2,
-        )
+        residual = Residual(bounded[:3] * LINEAR_BOUND_MPS2, bounded[3:] * ANGULAR_BOUND_RADPS2)
         ahead = self.kinematics.advance(state, command, memory.constants, residual)
-        return ahead, _Memory(memory.network, latent, memory.constants, memory.mass_kg)
+        return ahead, replace(memory, latent=latent)

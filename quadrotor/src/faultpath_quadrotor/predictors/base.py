@@ -65,12 +65,22 @@ class PredictorInputs:
     def take(self, scenes: Sequence[int] | Tensor) -> "PredictorInputs":
         """Return the inputs of some scenes, in the order given."""
         index = torch.as_tensor(scenes)
-        state = self.state
-        parts = (state.position, state.velocity, state.rotation, state.rate)
         return PredictorInputs(
-            State(*(part.index_select(-2, index) for part in parts)),
+            self.state.map(lambda part: part.index_select(-2, index)),
             {read: value.index_select(-2, index) for read, value in self.delivered.items()},
         )
+
+
+@dataclass(frozen=True)
+class Rollout:
+    """Predicted motion under candidate commands; `h = 0` is the end of the first interval."""
+
+    positions: Tensor
+    """`[3, S, H, K]`, metres, world frame: each scene's points lie together for the clearance."""
+    velocities: Tensor
+    """`[3, S, H, K]`, m/s, world frame."""
+    final: State
+    """State at the end of the horizon, batch `[S, K]`."""
 
 
 def hover_thrust(delivered: Delivered, place: str) -> Tensor:

@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterable, Mapping
 from enum import IntEnum
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any
 
 import torch
 from torch import Tensor
@@ -20,9 +20,9 @@ from faultpath_quadrotor.native.kernel_args import (
     BLOCK,
     Block,
     Lent,
+    as_kernel_argument,
     fields,
     is_exactly,
-    lend,
     pack,
     unlike,
 )
@@ -32,7 +32,7 @@ from faultpath_quadrotor.predictors.anchored import (
     LINEAR_BOUND_MPS2,
     AnchoredPredictor,
 )
-from faultpath_quadrotor.predictors.base import Predictor, PredictorInputs
+from faultpath_quadrotor.predictors.base import Predictor, PredictorInputs, Rollout
 from faultpath_quadrotor.predictors.kinematic import KinematicIntegrator, LinearDrag
 from faultpath_quadrotor.predictors.network import (
     ACTION_EMBEDDING,
@@ -45,6 +45,7 @@ from faultpath_quadrotor.predictors.unanchored import (
     UnanchoredNetwork,
     UnanchoredPredictor,
 )
+from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import GRAVITY_MPS2
 
 MOST_HIDDEN = 128
@@ -84,19 +85,6 @@ _ROWS: Mapping[Read, tuple[int, ...]] = MappingProxyType(
     }
 )
 """Rows of each reading, in the order of `Inputs` of `rollout.cpp`."""
-
-
-class Rolled(NamedTuple):
-    """Where candidates led."""
-
-    positions: Tensor
-    """`[3, S, H, K]`, m."""
-    velocities: Tensor
-    """`[3, S, H, K]`, m/s."""
-    rotation: Tensor
-    """At the end, `[3, 3, S, K]`."""
-    rate: Tensor
-    """At the end, `[3, S, K]`, rad/s."""
 
 
 class _Layer(Block):
@@ -165,7 +153,7 @@ class HorizonLoop:
             step |= {"drag": integrator.air.coefficients_kgps}
         self._model = _Model(**step)
 
-    def __call__(self, inputs: PredictorInputs, commands: Tensor) -> Rolled:
+    def __call__(self, inputs: PredictorInputs, commands: Tensor) -> Rollout:
         """Roll `commands` `[H, 4, S, K]` out from `inputs`, whose batch is `[S, 1]`.
 
         Raises:
@@ -177,19 +165,21 @@ class HorizonLoop:
         positions = commands.new_empty(3, scenes, horizon, candidates)
         velocities = torch.empty_like(positions)
         ends = commands.new_empty(12, scenes, candidates)
-        state = inputs.state
-        motion = (state.position, state.velocity, state.rotation, state.rate)
-        readings = {**dict(zip(_ROWS, motion, strict=False)), **inputs.delivered}
+        readings = {**dict(zip(_ROWS, inputs.state.parts, strict=False)), **inputs.delivered}
         self._kernels.call(
             "faultpath_roll",
             *(self._model, _Inputs(*self._lent(readings, scenes))),
-            lend("commands", commands.contiguous(), horizon, ACTION_FEATURES, scenes, candidates),
+            as_kernel_argument(
+                "commands", commands.contiguous(), horizon, ACTION_FEATURES, scenes, candidates
+            ),
             *(horizon, scenes, candidates),
-            lend("positions", positions, 3, scenes, horizon, candidates),
-            lend("velocities", velocities, 3, scenes, horizon, candidates),
-            lend("ends", ends, 12, scenes, candidates),
+            as_kernel_argument("positions", positions, 3, scenes, horizon, candidates),
+            as_kernel_argument("velocities", velocities, 3, scenes, horizon, candidates),
+            as_kernel_argument("ends", ends, 12, scenes, candidates),
         )
-        return Rolled(positions, velocities, ends[:9].unflatten(0, (3, 3)), ends[9:])
+        rotation, rate = ends[:9].unflatten(0, (3, 3)), ends[9:]
+        final = State(positions[:, :, -1], velocities[:, :, -1], rotation, rate)
+        return Rollout(positions, velocities, final)
 
     def _lent(self, readings: Delivered, scenes: int) -> Iterable[Lent | None]:
         for read, rows in _ROWS.items():
@@ -202,7 +192,7 @@ class HorizonLoop:
                     "none"
                 )
             else:
-                yield lend(channel, readings[read].contiguous(), *rows, scenes, 1)
+                yield as_kernel_argument(channel, readings[read].contiguous(), *rows, scenes, 1)
 
 
 def _integrator(integrator: KinematicIntegrator) -> str:
@@ -245,7 +235,9 @@ def _packed(network: LatentNetwork) -> dict[str, _Layer]:
     for name, weights in _layers(network).items():
         packed = pack(weights.detach() * _SCALES.get(name, 1.0), BLOCK)
         blocks, inputs, _ = packed.shape
-        laid[name] = _Layer(lend(name, packed, *packed.shape), inputs - 1, blocks * BLOCK)
+        laid[name] = _Layer(
+            as_kernel_argument(name, packed, *packed.shape), inputs - 1, blocks * BLOCK
+        )
     return laid
 
 

@@ -142,7 +142,11 @@ class KinematicIntegrator(Predictor):
         gain = (0.5 * constants.thrust_gain) * command[0]
         acceleration = (state.rotation[:, 2] + rotation[:, 2]) * gain
         if constants.wind_acceleration is not None:
-            acceleration += self.air.force(state.rotation, self._air_velocity(state, constants))
+            air = constants.wind_acceleration  # the air's velocity over the mass
+            if self.drag:
+                assert constants.inverse_mass is not None
+                air = torch.addcmul(air, state.velocity, constants.inverse_mass, value=-1)
+            acceleration += self.air.force(state.rotation, air)
         acceleration[2] -= GRAVITY_MPS2
         if residual is not None:
             acceleration += residual.linear_mps2
@@ -150,12 +154,3 @@ class KinematicIntegrator(Predictor):
         velocity = torch.add(state.velocity, acceleration, alpha=dt)
         position = torch.add(state.position, state.velocity + velocity, alpha=0.5 * dt)
         return State(position, velocity, rotation, rate)
-
-    def _air_velocity(self, state: State, constants: Constants) -> Tensor:
-        """Return the air's velocity over the mass: the wind term alone, or with that of drag."""
-        air = constants.wind_acceleration
-        assert air is not None
-        if self.drag:
-            assert constants.inverse_mass is not None
-            air = torch.addcmul(air, state.velocity, constants.inverse_mass, value=-1)
-        return air

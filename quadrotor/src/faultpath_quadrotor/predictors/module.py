@@ -1,37 +1,30 @@
 """The predictor as a module of the loop: a query from commands to motion."""
 
 import torch
+from typing_extensions import override
 
-from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Query
-from faultpath_quadrotor.batching import lanes_of, scenes_first
+from faultpath.loop import Outputs, Query
+from faultpath_quadrotor.batching import Delivered, LaneModule
 from faultpath_quadrotor.predictors import Predictor
 from faultpath_quadrotor.predictors.base import hover_thrust
-from faultpath_quadrotor.predictors.predictor_inputs import ports, predictor_inputs, taking
-from faultpath_quadrotor.predictors.rollout import Candidates, Predicted, rolling
+from faultpath_quadrotor.predictors.predictor_inputs import ports, predictor_inputs, single
+from faultpath_quadrotor.predictors.rollout import Candidates, Predicted, Roll, rolling
 
 
-class Prediction(Module):
+class Prediction(LaneModule):
     """Answers where commands lead, and gives the thrust that it believes holds the vehicle."""
 
     name, writes = "predictor", ("predicted_motion", "hover_thrust")
 
     def __init__(self, predictor: Predictor, device: torch.device) -> None:
+        super().__init__(device)
         self._predictor = predictor
-        self._device = device
         self.reads = ports(predictor.reads - {"history"})
 
-    def begin(self, batch: Batch) -> Memory:
-        """Return the lanes, and how the predictor is rolled out there."""
-        return (
-            lanes_of(batch, self._device),
-            len(batch.scenes),
-            rolling(self._predictor, self._device),
-        )
-
-    def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
-        """Take the predictor's readings in; its answers follow from them."""
-        lanes, count, roll = memory
-        known = predictor_inputs(self._predictor.reads, taking(inputs, lanes))
+    @override
+    def compute(self, readings: Delivered, step: int, memory: Roll | None) -> tuple[Outputs, Roll]:
+        roll = memory or rolling(self._predictor, self._device)
+        known = predictor_inputs(self._predictor.reads, single(readings))
         hover = hover_thrust(known.delivered, "trim")[:, 0]
 
         def predict(candidates: Candidates) -> Predicted:
@@ -42,4 +35,4 @@ class Prediction(Module):
             return Predicted(candidates.count, candidates.parts, tuple(rollouts))
 
         motion = Query(predict, Predicted.motion, Predicted.moved)
-        return {"predicted_motion": motion, "hover_thrust": scenes_first(hover, count)}, memory
+        return {"predicted_motion": motion, "hover_thrust": hover}, roll

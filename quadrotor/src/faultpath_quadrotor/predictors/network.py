@@ -12,14 +12,15 @@ import torch
 from torch import Tensor, nn
 
 from faultpath_quadrotor.batching import Delivered
-from faultpath_quadrotor.native.kernel_args import covered, tell_portable
+from faultpath_quadrotor.native.kernel_args import as_kernel_argument, covered, tell_portable
 from faultpath_quadrotor.native.library import kernels_on
 from faultpath_quadrotor.predictors.affine import affine
-from faultpath_quadrotor.predictors.recurrent import fits, recur
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import GRAVITY_MPS2
 
 LATENT = 32  # paper, Section IV-A
+MOST_INPUTS = 32
+"""Inputs for which `recurrent.cpp` has room; its latent is `LATENT`."""
 ACTION_EMBEDDING = 16  # derived: with it the parameter counts are the paper's
 STATE_FEATURES = 15
 ACTION_FEATURES = 4
@@ -68,28 +69,38 @@ class GatedCell(nn.Module):
         candidate = torch.addcmul(projected[split:], reset, remembered).tanh()
         return torch.lerp(candidate, latent, update)
 
+    def last(self, sequence: Tensor) -> Tensor:
+        """Return the latent `[latent, N]` after a sequence `[T, inputs, N]`, from zero."""
+        built = None if torch.is_grad_enabled() else kernels_on(sequence.device)
+        steps, inputs, columns = sequence.shape
+        latent = sequence.new_zeros(self.latent, columns)
+        if built is None or not self._has_kernel(sequence):
+            for step in sequence:
+                latent = self(step, latent)
+            return latent
+        gates, entering, kept = 3 * self.latent, self.from_input, self.from_latent
+        built.call(
+            "faultpath_recur",
+            as_kernel_argument("weights of the inputs", entering.weight.detach(), gates, inputs),
+            as_kernel_argument("biases of the inputs", entering.bias.detach(), gates, 1),
+            as_kernel_argument("weights of the latent", kept.weight.detach(), gates, self.latent),
+            as_kernel_argument("biases of the latent", kept.bias.detach(), gates, 1),
+            as_kernel_argument("sequence", sequence.contiguous(), steps, inputs, columns),
+            *(steps, inputs, columns),
+            as_kernel_argument("latent", latent, self.latent, columns),
+        )
+        return latent
+
     def _has_kernel(self, sequence: Tensor) -> bool:
         layers = (self.from_input, self.from_latent)
         if not (covered(self, GatedCell) and all(covered(layer, Affine) for layer in layers)):
             return False
-        if not fits(sequence.shape[1], self.latent):
-            size = f"{sequence.shape[1]} inputs and a latent of {self.latent}"
+        inputs = sequence.shape[1]
+        if not 0 < inputs <= MOST_INPUTS or self.latent != LATENT:
+            size = f"{inputs} inputs and a latent of {self.latent}"
             tell_portable("A recurrent cell", f"its kernel has no room for {size}")
             return False
         return sequence.dtype == torch.float32
-
-    def last(self, sequence: Tensor) -> Tensor:
-        """Return the latent `[latent, N]` after a sequence `[T, inputs, N]`, from zero."""
-        compiled = None if torch.is_grad_enabled() else kernels_on(sequence.device)
-        if compiled is not None and self._has_kernel(sequence):
-            from_input, from_latent = (
-                (layer.weight, layer.bias) for layer in (self.from_input, self.from_latent)
-            )
-            return recur(compiled, from_input, from_latent, sequence)
-        latent = sequence.new_zeros(self.latent, sequence.shape[-1])
-        for step in sequence:
-            latent = self(step, latent)
-        return latent
 
 
 class LatentNetwork(nn.Module):

@@ -5,14 +5,15 @@ delivered value comes from.
 """
 
 from collections.abc import Callable, Collection
+from dataclasses import replace
 
 import torch
 from torch import Tensor
 
-from faultpath.loop import Inputs, Port
+from faultpath.loop import Port
 from faultpath.plugin.system import SystemMistake
 from faultpath_quadrotor import so3
-from faultpath_quadrotor.batching import Delivered, lanes_last
+from faultpath_quadrotor.batching import Delivered
 from faultpath_quadrotor.device import host_readable
 from faultpath_quadrotor.predictors.base import PredictorInputs
 from faultpath_quadrotor.state import State
@@ -36,13 +37,9 @@ Take = Callable[[str, str], Tensor]
 """`take(channel, place)`: what a tap delivered, lanes last, single precision."""
 
 
-def taking(inputs: Inputs, lanes: Tensor) -> Take:
-    """Return the function that takes a step's readings, lanes last, single precision."""
-
-    def take(channel: str, place: str) -> Tensor:
-        return lanes_last(inputs[Port(channel, place)], lanes).float()
-
-    return take
+def single(readings: Delivered) -> Take:
+    """Return the function that takes readings in single precision."""
+    return lambda channel, place: readings[channel, place].float()
 
 
 def ports(places: Collection[str]) -> frozenset[Port]:
@@ -111,5 +108,4 @@ def _start(state: State) -> State:
     off = (product - identity).abs().amax((0, 1)) > 1e-4
     if not host_readable(off.device) or off.any():
         rotation = torch.where(off, so3.project(rotation), rotation)
-    parts = (state.position, state.velocity, rotation, state.rate)
-    return State(*(part[..., None] for part in parts))
+    return replace(state, rotation=rotation).map(lambda part: part[..., None])

@@ -1,6 +1,6 @@
 """The only horizon loop: planner, training and probes all roll a predictor out here."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -12,20 +12,9 @@ from faultpath_quadrotor.batching import Chunk
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.native.kernel_args import is_exactly, tell_portable
 from faultpath_quadrotor.predictors import Predictor, PredictorInputs, TrueParameter
+from faultpath_quadrotor.predictors.base import Rollout
 from faultpath_quadrotor.predictors.compiled import HorizonLoop, uncovered
 from faultpath_quadrotor.state import State
-
-
-@dataclass(frozen=True)
-class Rollout:
-    """Predicted motion under candidate commands; `h = 0` is the end of the first interval."""
-
-    positions: Tensor
-    """`[3, S, H, K]`, metres, world frame: each scene's points lie together for the clearance."""
-    velocities: Tensor
-    """`[3, S, H, K]`, m/s, world frame."""
-    final: State
-    """State at the end of the horizon, batch `[S, K]`."""
 
 
 def unroll(predictor: Predictor, inputs: PredictorInputs, commands: Tensor) -> Iterator[State]:
@@ -74,9 +63,7 @@ def rolling(predictor: Predictor, device: torch.device = CPU) -> Roll:
     def roll(inputs: PredictorInputs, commands: Tensor) -> Rollout:
         if commands.shape[-1] == 1:
             return rollout(predictor, inputs, commands)
-        positions, velocities, rotation, rate = loop(inputs, commands)
-        final = State(positions[:, :, -1], velocities[:, :, -1], rotation, rate)
-        return Rollout(positions, velocities, final)
+        return loop(inputs, commands)
 
     return roll
 
@@ -117,14 +104,10 @@ class Predicted:
     def moved(self, motion: Tensor) -> "Predicted":
         """Return it with other positions and velocities `[B, 6, H, K]`; attitudes stay."""
         lanes = motion.movedim(0, 1)
-        rollouts: Sequence[Rollout] = [
-            _moved(rollout, lanes[:, part.rows].contiguous())
-            for part, rollout in zip(self.parts, self.rollouts, strict=True)
-        ]
+        rollouts: list[Rollout] = []
+        for part, rollout in zip(self.parts, self.rollouts, strict=True):
+            positions, velocities = (x.contiguous() for x in lanes[:, part.rows].split(3))
+            end = positions[:, :, -1], velocities[:, :, -1]
+            final = replace(rollout.final, position=end[0], velocity=end[1])
+            rollouts.append(Rollout(positions, velocities, final))
         return replace(self, rollouts=tuple(rollouts))
-
-
-def _moved(rollout: Rollout, motion: Tensor) -> Rollout:
-    positions, velocities = motion[:3].contiguous(), motion[3:].contiguous()
-    final = replace(rollout.final, position=positions[:, :, -1], velocity=velocities[:, :, -1])
-    return Rollout(positions, velocities, final)

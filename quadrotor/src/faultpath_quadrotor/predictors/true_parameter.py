@@ -73,10 +73,7 @@ class TrueParameter(Predictor):
             inverse_mass=1 / inputs["mass", "wind_map"],
             wind=inputs["wind", "wind_map"],
             stiffness=torch.stack(
-                [
-                    inertia * k
-                    for inertia, k in zip(physics.inertia_kgm2, RATE_GAIN_PER_S, strict=True)
-                ]
+                [i * k for i, k in zip(physics.inertia_kgm2, RATE_GAIN_PER_S, strict=True)]
             ),
             keep=keep,
             mean=lag * (1 - keep),
@@ -107,17 +104,7 @@ class TrueParameter(Predictor):
             average = torch.addcmul(command[0], lag, memory.mean)  # over the substep: exact
             thrust = torch.addcmul(command[0], lag, memory.keep)
             state, torque = self._substep(state, command[1:], average, torque, memory)
-        return state, _Memory(
-            memory.physics,
-            memory.thrust_gain,
-            memory.inverse_mass,
-            memory.wind,
-            memory.stiffness,
-            memory.keep,
-            memory.mean,
-            thrust,
-            torque,
-        )
+        return state, replace(memory, thrust=thrust, torque=torque)
 
     def _substep(
         self, state: State, target: Tensor, thrust: Tensor, torque: Tensor, memory: _Memory

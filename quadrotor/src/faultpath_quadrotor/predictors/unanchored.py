@@ -1,6 +1,6 @@
 """WM-U: a learned predictor without the kinematic integrator."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import torch
 from torch import Tensor
@@ -9,10 +9,7 @@ from typing_extensions import override
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.batching import Delivered
 from faultpath_quadrotor.predictors.base import Memory, Predictor, PredictorInputs
-from faultpath_quadrotor.predictors.network import (
-    FoldedNetwork,
-    LatentNetwork,
-)
+from faultpath_quadrotor.predictors.network import FoldedNetwork, LatentNetwork
 from faultpath_quadrotor.state import State
 
 HIDDEN = 128  # paper, Section IV-A
@@ -52,11 +49,6 @@ class UnanchoredPredictor(Predictor):
     def __init__(self, network: UnanchoredNetwork) -> None:
         self.network = network
 
-    @staticmethod
-    def build_network() -> UnanchoredNetwork:
-        """Return a network of the right shape."""
-        return UnanchoredNetwork()
-
     @override
     def encode(self, history: Delivered) -> Tensor:
         return self.network.encode(history)
@@ -83,4 +75,4 @@ class UnanchoredPredictor(Predictor):
             so3.compose(state.rotation, so3.exp(turned)),
             state.rate + spun,
         )
-        return ahead, _Memory(memory.network, latent, memory.mass_kg, memory.conditioning)
+        return ahead, replace(memory, latent=latent)

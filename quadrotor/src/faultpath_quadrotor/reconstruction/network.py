@@ -11,10 +11,11 @@ from torch import Tensor, nn
 from typing_extensions import override
 
 from faultpath_quadrotor.batching import Delivered, Read
+from faultpath_quadrotor.predictors.history import STEPS
 from faultpath_quadrotor.predictors.network import Affine, GatedCell, draw_weights
+from faultpath_quadrotor.predictors.predictor_inputs import STATE as CHANNELS
 from faultpath_quadrotor.reconstruction.base import Memory, Reconstruction
 
-INTERVALS = 12  # paper, appendix: completed 20 Hz intervals
 STATE = 18  # position, velocity, rotation matrix, body rate (paper, Section IV-A)
 ACTION = 4
 CODE = 32  # paper, appendix
@@ -83,19 +84,14 @@ class WindNetwork(nn.Module):
     def estimate(self, states: Tensor, commands: Tensor, calibration: Tensor | None) -> Tensor:
         """Return the wind `[3, N]`, m/s, world frame; it is never clipped.
 
-        Args:
-            states: State at each interval's end, `[18, 12, N]`.
-            commands: What was executed over each interval, `[4, 12, N]`, N and rad/s.
-            calibration: Delivered m~ (kg) and T~, `[2, N]`; `None` where it is withheld.
+        `states` are those at the intervals' ends, `[18, 12, N]`, `commands` `[4, 12, N]` what was
+        executed over them, `calibration` the delivered m~ (kg) and T~, `[2, N]`.
         """
         supplied = None if calibration is None else self.calibration(calibration)
         return self(*self.inputs(states, commands), supplied)
 
 
-_STATE_CHANNELS = ("position", "velocity", "attitude", "body_rate")
-_HISTORY: frozenset[Read] = frozenset(
-    (channel, "history") for channel in (*_STATE_CHANNELS, "action")
-)
+_HISTORY: frozenset[Read] = frozenset((channel, "history") for channel in (*CHANNELS, "action"))
 _HEAD: tuple[Read, Read] = (("mass", "head"), ("thrust_scale", "head"))
 READS = _HISTORY.union(_HEAD)
 """All that such a reconstruction may read."""
@@ -130,7 +126,7 @@ class RecurrentReconstruction(Reconstruction):
     def begin(self, delivered: Delivered) -> Memory:
         """Start with a hover for all intervals; see `Reconstruction.begin`."""
         state, command = (
-            value.expand(-1, INTERVALS, *value.shape[2:]) for value in _interval(delivered)
+            value.expand(-1, STEPS, *value.shape[2:]) for value in _interval(delivered)
         )
         return RecurrentMemory(state, command, self._calibration(delivered))
 
@@ -158,7 +154,6 @@ class RecurrentReconstruction(Reconstruction):
 
 def _interval(delivered: Delivered) -> tuple[Tensor, Tensor]:
     """Return the state at the end of an interval and the command over it, `[.., 1, *batch]`."""
-    parts = [delivered[channel, "history"] for channel in _STATE_CHANNELS]
-    position, velocity, rotation, rate = parts
+    position, velocity, rotation, rate = (delivered[name, "history"] for name in CHANNELS)
     state = torch.cat((position, velocity, rotation.flatten(0, 1), rate))
     return state.float()[:, None], delivered["action", "history"].float()[:, None]

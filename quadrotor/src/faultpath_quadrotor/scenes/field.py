@@ -10,6 +10,7 @@ arena it goes on falling without end (cells at the border extrapolate): minus th
 distances beyond each wall, which trilinear cells reproduce, to rounding, however far a point lies.
 """
 
+import ctypes
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -20,8 +21,7 @@ import torch
 from torch import Tensor
 
 from faultpath_quadrotor import native
-from faultpath_quadrotor.native.kernel_args import covered
-from faultpath_quadrotor.scenes.compiled import CompiledField
+from faultpath_quadrotor.native.kernel_args import Block, as_kernel_argument, covered, fields
 from faultpath_quadrotor.scenes.geometry import rectangle_distance
 from faultpath_quadrotor.scenes.prisms import RoundedPrism, arena, solids
 from faultpath_quadrotor.scenes.scene import Scene
@@ -110,6 +110,17 @@ def _plan_distance(prisms: list[RoundedPrism], x: Tensor, y: Tensor) -> Tensor:
     return plan.amin(0)
 
 
+class _Field(Block):
+    """`Field` of `field.cpp`."""
+
+    _fields_ = (
+        ("table", ctypes.c_void_p),
+        *fields(ctypes.c_int64, "along_x along_y"),
+        *fields(ctypes.c_void_p, "origin last first"),
+        ("per_metre", ctypes.c_float),
+    )
+
+
 @dataclass(frozen=True)
 class DistanceField:
     """Baked distance of B scenes.
@@ -139,14 +150,7 @@ class DistanceField:
         spacing_m: float = CELL_M,
         device: torch.device | str | None = None,
     ) -> "DistanceField":
-        """Bake scenes into one table: about 0.8 MB each.
-
-        Args:
-            scenes: One scene or B of them; the order is the order of the batch.
-            free_space: Keep only the boundaries of each arena.
-            spacing_m: Distance between lattice points.
-            device: Where the queries run.
-        """
+        """Bake scenes, or their boundaries alone, into one table: about 0.8 MB each."""
         scenes = [scenes] if isinstance(scenes, Scene) else list(scenes)
         lattices = [Lattice.over(scene, spacing_m) for scene in scenes]
         shapes = torch.tensor([lattice.shape for lattice in lattices])  # [B, 3]
@@ -174,31 +178,55 @@ class DistanceField:
         )
 
     def query(self, points: Tensor) -> Tensor:
-        """Return the interpolated signed distance.
+        """Return the signed distance `[B, N]` at points `[3, B, N]`, world frame, m.
 
-        Args:
-            points: `[3, B, N]`, float32, world frame, m; scene b is axis 1.
-
-        Returns:
-            `[B, N]`, m, not truncated. A point with a coordinate that is not a number gets NaN.
+        It is not truncated. A point with a coordinate that is not a number gets NaN.
         """
-        compiled = self._compiled
-        return self._interpolate(points) if compiled is None else compiled.query(points)
+        kernels = native.kernels_on(self.table.device)
+        field = None if kernels is None else self._field
+        if kernels is None or field is None:
+            return self._interpolate(points)
+        scenes, count = len(self.first), points.shape[2]
+        distances = torch.empty(scenes, count)
+        points = points.expand(3, scenes, count).float().contiguous()
+        kernels.call(
+            "faultpath_field",
+            field,
+            as_kernel_argument("points", points, 3, scenes, count),
+            *(scenes, count),
+            as_kernel_argument("distances", distances, scenes, count),
+        )
+        return distances
 
     @cached_property
-    def _compiled(self) -> CompiledField | None:
-        kernels = native.kernels_on(self.table.device)
-        if kernels is None or not covered(self, DistanceField):
+    def _field(self) -> _Field | None:
+        """The field as its kernel reads it; `ValueError` where a cell lies outside the table."""
+        if not covered(self, DistanceField):
             return None
-        return CompiledField(
-            kernels, self.table, self.pitch, self.origin, self.last, self.first, self.per_metre
+        scenes = len(self.first)
+        steps = torch.tensor(self.pitch, dtype=torch.float64)[:, None, None]
+        furthest = (self.last * steps).sum(0) + self.first + sum(self.pitch)
+        inside = (self.first >= 0) & (self.last >= 0).all(0) & (furthest < len(self.table))
+        if self.pitch[2] != 1 or min(self.pitch) < 1 or not bool(inside.all()):
+            raise ValueError(f"distance field: cells of pitch {self.pitch} lie outside its table")
+        return _Field(
+            as_kernel_argument("table", self.table, self.table.numel()),
+            *self.pitch[:2],
+            as_kernel_argument("origin", self.origin.contiguous(), 3, scenes, 1),
+            as_kernel_argument("last", self.last.contiguous(), 3, scenes, 1),
+            as_kernel_argument("first", self.first.contiguous(), scenes, 1, dtype=torch.int32),
+            self.per_metre,
         )
 
     def _interpolate(self, points: Tensor) -> Tensor:
         local = (points - self.origin).mul_(self.per_metre)
         cell = torch.minimum(local, self.last).clamp_min_(0).floor_()
         x, y, z = local.sub_(cell).flatten(1)  # within the cell, or beyond it at the border
-        index = self._place(cell).flatten()
+        # Places within one scene stay below 2^24, up to where float32 counts exactly.
+        place = cell[0].mul_(self.pitch[0]).add_(cell[1].mul_(self.pitch[1])).add_(cell[2])
+        # NaN converts to any integer: keep the read inside the table, the fraction stays NaN.
+        most = len(self.table) - 1 - sum(self.pitch)
+        index = place.to(torch.int32).add_(self.first).clamp_(0, most).flatten()
         along_x, along_y, along_z = self.pitch
 
         def edge(shift: int) -> Tensor:  # between two lattice points along x
@@ -208,14 +236,6 @@ class DistanceField:
         near = _between(edge(0), edge(along_y), y)
         far = _between(edge(along_z), edge(along_z + along_y), y)
         return _between(near, far, z).view(points.shape[1:])
-
-    def _place(self, cell: Tensor) -> Tensor:
-        # Places within one scene stay below 2^24, up to where float32 counts exactly.
-        place = cell[0].mul_(self.pitch[0]).add_(cell[1].mul_(self.pitch[1])).add_(cell[2])
-        # NaN converts to any integer: keep the read inside the table, the fraction stays NaN.
-        return (
-            place.to(torch.int32).add_(self.first).clamp_(0, len(self.table) - 1 - sum(self.pitch))
-        )
 
 
 def _between(low: Tensor, high: Tensor, fraction: Tensor) -> Tensor:

@@ -58,14 +58,7 @@ class Geometry:
         dtype: torch.dtype = torch.float64,
         device: torch.device | str | None = None,
     ) -> "Geometry":
-        """Gather the geometry of scenes.
-
-        Args:
-            scenes: B scenes; the order is the order of the batch.
-            free_space: Keep only the boundaries of each arena.
-            dtype: Precision of the distances.
-            device: Where they are computed.
-        """
+        """Gather the geometry of scenes, or of their boundaries alone."""
         lists = [[arena(scene), *([] if free_space else solids(scene))] for scene in scenes]
         count = max(map(len, lists))
         padded = [prisms + prisms[:1] * (count - len(prisms)) for prisms in lists]
@@ -99,17 +92,10 @@ class Geometry:
         return torch.cat((*turn, self.offset, self.half, self.rounding[None], self.sign[None]))
 
     def distance(self, points: Tensor) -> Tensor:
-        """Return the signed distance of points to the nearest surface.
+        """Return the signed distance `[B, ...]` of points `[3, B, ...]` to the nearest surface, m.
 
-        Args:
-            points: `[3, B, ...]` in the world frame, m; scene b is axis 1.
-
-        Returns:
-            `[B, ...]`, m: positive in free space, negative in solids and outside the arena.
+        World frame; positive in free space, negative in solids and outside the arena.
         """
-        return self._signed(points).amin(0)
-
-    def _signed(self, points: Tensor) -> Tensor:
         tail = (1,) * (points.dim() - 2)
         parts = (self.along_x, self.along_y, self.along_z, self.offset, self.half)
         along_x, along_y, along_z, offset, half, rounding, sign = (
@@ -119,4 +105,4 @@ class Geometry:
         local = (along_x * x).add_(along_y * y).add_(along_z * z).sub_(offset)
         beyond_x, beyond_y, beyond_z = local.abs_().sub_(half).unbind(0)
         plan = rectangle_distance(beyond_x, beyond_y).sub_(rounding)
-        return rectangle_distance(plan, beyond_z).mul_(sign)
+        return rectangle_distance(plan, beyond_z).mul_(sign).amin(0)

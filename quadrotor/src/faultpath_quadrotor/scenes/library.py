@@ -56,12 +56,7 @@ class Library:
 def load_library(name: str | Path) -> Library:
     """Return a frozen library by its name, or a library from a file that can be flown.
 
-    Args:
-        name: One of `FROZEN`, or the path of a library file.
-
-    Raises:
-        UserError: If there is no such library or file, the file is damaged, or a scene cannot be
-            flown; names the scene and the field.
+    Raises `UserError` where there is no such file, it is damaged, or a scene cannot be flown.
     """
     if isinstance(name, str) and name in FROZEN:
         return _read(frozen_file(name), f"frozen library {name!r}")

@@ -98,11 +98,9 @@ def _corner(first: float, second: float) -> float:
 
 
 def floor_plan(scene: Scene, free_space: bool = False) -> FloorPlan:
-    """Return the floor plan of a scene, lowest shapes first, so that what hangs is drawn on top.
+    """Return the floor plan of a scene, or of its arena alone.
 
-    Args:
-        scene: The scene.
-        free_space: Keep only the arena, as the free-space variant does.
+    Lowest shapes come first, so that what hangs is drawn on top.
     """
     prisms = [
         Prism(

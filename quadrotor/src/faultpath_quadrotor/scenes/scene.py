@@ -4,8 +4,9 @@ import hashlib
 import json
 from enum import StrEnum
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
+from faultpath.plugin.system import Frozen
 from faultpath_quadrotor.vehicle import VehicleParameters
 
 Point = tuple[float, float, float]
@@ -21,18 +22,14 @@ class Topology(StrEnum):
     INTERSECTIONS = "intersections"
 
 
-class _Frozen(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
-
-
-class ArenaBounds(_Frozen):
+class ArenaBounds(Frozen, allow_inf_nan=False):
     """Inner faces of floor, ceiling and walls: the free box between two corners, m."""
 
     low_m: Point
     high_m: Point
 
 
-class Box(_Frozen):
+class Box(Frozen, allow_inf_nan=False):
     """A solid box turned about the vertical; full sides are twice the half extents."""
 
     centre_m: Point
@@ -40,7 +37,7 @@ class Box(_Frozen):
     yaw_rad: float = 0.0
 
 
-class Cylinder(_Frozen):
+class Cylinder(Frozen, allow_inf_nan=False):
     """A solid upright pillar between two heights."""
 
     centre_m: tuple[float, float]
@@ -49,7 +46,7 @@ class Cylinder(_Frozen):
     high_m: float
 
 
-class Scene(_Frozen):
+class Scene(Frozen, allow_inf_nan=False):
     """One scene of a library; it never changes, and its content hash says so.
 
     Attributes:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from faultpath.plugin.system import UserError
+from faultpath_quadrotor.training.parts import CLEARANCE_POOL, TRAJECTORY_POOL
 
 if TYPE_CHECKING:
     from faultpath_quadrotor.training.fitting import ModelTask
@@ -78,19 +79,14 @@ def _clearance(name: str, seed: int, data: Path) -> ModelTask:
     return ClearanceTask(seed, data)
 
 
-_BOTH = ("nominal", "wind")
+_NOMINAL, _WIND, _BOTH = ("nominal",), ("wind",), ("nominal", "wind")
 PREDICTORS = (
-    ModelEntry("wm-a", _predictor, ("nominal",), "physics-anchored predictor", 4),
-    ModelEntry("wm-a+dcc", _predictor, ("nominal",), "wm-a fitted with perturbed calibration", 4),
-    ModelEntry("wm-u", _predictor, ("nominal",), "unanchored predictor", 12),
-    ModelEntry("wm-u+dcc", _predictor, ("nominal",), "wm-u fitted with perturbed calibration", 12),
+    ModelEntry("wm-a", _predictor, _NOMINAL, "physics-anchored predictor", 4),
+    ModelEntry("wm-a+dcc", _predictor, _NOMINAL, "wm-a fitted with perturbed calibration", 4),
+    ModelEntry("wm-u", _predictor, _NOMINAL, "unanchored predictor", 12),
+    ModelEntry("wm-u+dcc", _predictor, _NOMINAL, "wm-u fitted with perturbed calibration", 12),
     ModelEntry(
-        "wm-a-wind",
-        _predictor,
-        _BOTH,
-        "wm-a with the wind as an input",
-        8,
-        seeds=SHARED_LOSS_SEEDS,
+        "wm-a-wind", _predictor, _BOTH, "wm-a with the wind as an input", 8, SHARED_LOSS_SEEDS
     ),
     ModelEntry(
         "wm-a-nowind", _predictor, _BOTH, "wm-a on the same windy data without that input", 8
@@ -100,35 +96,32 @@ RECONSTRUCTIONS = (
     ModelEntry(
         "gru",
         _reconstruction,
-        ("wind",),
+        _WIND,
         "wind from the history, given calibration",
         5,
-        seeds=SHARED_LOSS_SEEDS,
+        SHARED_LOSS_SEEDS,
     ),
     ModelEntry(
         "gru+dcc",
         _reconstruction,
-        ("wind",),
+        _WIND,
         "gru fitted with perturbed calibration",
         5,
-        seeds=SHARED_LOSS_SEEDS,
+        SHARED_LOSS_SEEDS,
     ),
-    ModelEntry(
-        "gru+state", _reconstruction, ("wind",), "gru fitted with perturbed motion", 5, seeds=(0,)
-    ),
-    ModelEntry("gru-withheld", _reconstruction, ("wind",), "gru without calibration", 5),
+    ModelEntry("gru+state", _reconstruction, _WIND, "gru fitted with perturbed motion", 5, (0,)),
+    ModelEntry("gru-withheld", _reconstruction, _WIND, "gru without calibration", 5),
     ModelEntry(
         "gru-trajectory",
         _reconstruction,
-        ("trajectory",),
+        (TRAJECTORY_POOL,),
         "gru on closed-loop flights of selection scenes",
         2,
         after=("wm-a-wind",),
     ),
 )
-CLEARANCE_POOL = "clearance"
 CLEARANCE = ModelEntry(
-    "clearance", _clearance, (CLEARANCE_POOL,), "obstacle clearance from depth", 6, seeds=(0,)
+    "clearance", _clearance, (CLEARANCE_POOL,), "obstacle clearance from depth", 6, (0,)
 )
 
 ALL = (*PREDICTORS, *RECONSTRUCTIONS, CLEARANCE)

@@ -1,39 +1,30 @@
-"""Depth images and labelled points for the clearance model: one file a scene, made from its id.
+"""Depth images and labelled points for the clearance model, made scene by scene from its id.
 
 Poses are as flown: anywhere the vehicle fits, any heading, level as the camera's mount. Points lie
-where the planner asks: over the field of view, close to what is seen, and all round the vehicle. A
-scene's file depends on nothing but the recipe and the scene, so a run that was killed goes on where
-it was and ends with the same bytes.
+where the planner asks: over the field of view, close to what is seen, and all round the vehicle.
 """
 
-import hashlib
-import json
-import sys
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 import torch
-from safetensors import SafetensorError
-from safetensors.torch import load, save
 from torch import Tensor
 
-from faultpath.plugin.data import locked, sweep, write, write_text
-from faultpath.plugin.system import Frozen, Misread, UserError, contents, generator, read_json
+from faultpath.plugin.system import Frozen, generator
 from faultpath_quadrotor import native, so3
 from faultpath_quadrotor.perception.camera import HEIGHT, WIDTH, rays
 from faultpath_quadrotor.perception.labels import visible_distance
 from faultpath_quadrotor.perception.render import DepthRenderer
 from faultpath_quadrotor.scenes.geometry import Geometry
-from faultpath_quadrotor.scenes.library import Library, load_library
+from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.scenes.scene import Scene
 from faultpath_quadrotor.state import State
-from faultpath_quadrotor.training.parts import DataFile, Progress, make_missing
-from faultpath_quadrotor.training.provenance import code_of
+from faultpath_quadrotor.training.parts import CLEARANCE_POOL, Progress
+from faultpath_quadrotor.training.pool import Part, PoolRecipe, code_of, make_pool, read_pool
 from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M
 
-FORMAT = 2
 PER_METRE = 10_000
 """Depths are stored in tenths of a millimetre, 16 bits each."""
 
@@ -41,7 +32,6 @@ PER_METRE = 10_000
 class ClearanceRecipe(Frozen):
     """Settings that decide every number of the data set."""
 
-    format: int = FORMAT
     library: str = "training"
     images: int = 200
     """Images a scene."""
@@ -84,6 +74,10 @@ class Samples:
     def __len__(self) -> int:
         return len(self.depth)
 
+    def tensors(self) -> dict[str, Tensor]:
+        """Return what a pool keeps."""
+        return vars(self)
+
     def take(self, index: Tensor) -> "Samples":
         """Return some of the images."""
         return Samples(**{name: part[index] for name, part in vars(self).items()})
@@ -95,64 +89,33 @@ class Samples:
 
 def collect(
     folder: Path,
-    recipe: ClearanceRecipe | None = None,
+    settings: ClearanceRecipe | None = None,
     workers: int = 2,
     progress: Progress | None = None,
 ) -> Path:
-    """Make the data set below `folder` and return its provenance file.
-
-    Files that exist are kept. Raises `UserError` when the folder holds a data set of another
-    recipe or cannot be written.
-    """
-    recipe = recipe or ClearanceRecipe()
-    library = load_library(recipe.library)
-    path = provenance_path(folder)
-    provenance = _provenance(recipe, library)
-    if path.exists():
-        if _read_provenance(path) == provenance:
-            return path
-        raise UserError(
-            f"{path} was made by another recipe or other code: choose another folder, or delete "
-            f"it and the folder {path.with_suffix('')} to make the data again."
-        )
-    shards = _shards(folder, recipe, library)
-    place = shards[0][1].parent
-    try:
-        place.mkdir(parents=True, exist_ok=True)
-        with locked(place, lambda notice: print(notice, file=sys.stderr)):
-            sweep(place)
-            parts = [
-                DataFile(shard, partial(_make, recipe, scene, shard)) for scene, shard in shards
-            ]
-            make_missing([parts], workers, progress)
-        write_text(path, json.dumps(provenance, indent=2, sort_keys=True) + "\n")
-    except OSError as error:
-        raise UserError(
-            f"cannot write to {folder} ({error.strerror}): choose a folder that you may write to."
-        ) from error
-    return path
+    """Make the data set in `folder` and return its file; see `make_pool`."""
+    settings = settings or ClearanceRecipe()
+    library = load_library(settings.library)
+    parts = [Part(f"{scene.index:03d}", 1, partial(draw, settings, scene)) for scene in library]
+    return make_pool(folder, recipe(settings), parts, workers, progress)
 
 
-def read(folder: Path, recipe: ClearanceRecipe) -> Samples:
-    """Return the data set that `collect` made below `folder`; `UserError` when it is not whole."""
-    library = load_library(recipe.library)
-    path = provenance_path(folder)
-    if not path.exists() or _read_provenance(path) != _provenance(recipe, library):
-        raise UserError(f"{folder} holds no clearance data of this recipe: collect it first.")
-    parts: list[Samples] = []
-    for scene, shard in _shards(folder, recipe, library):
-        try:
-            content = load(contents(shard))
-        except (OSError, SafetensorError) as error:
-            raise UserError(f"{shard} cannot be read: delete {path} and collect again.") from error
-        parts.append(Samples(**content, scene=torch.full((recipe.images,), scene.index)))
-    columns = zip(*(vars(part).values() for part in parts), strict=True)
-    return Samples(*map(torch.cat, columns))
+def recipe(settings: ClearanceRecipe | None = None) -> PoolRecipe:
+    """Return what decides the data set's numbers."""
+    settings = settings or ClearanceRecipe()
+    library = load_library(settings.library)
+    return PoolRecipe(
+        pool=CLEARANCE_POOL,
+        episodes=len(library),
+        seed=settings.seed,
+        code_sha256=code_of(),
+        settings={**settings.model_dump(mode="json"), "library_sha": library.content_hash},
+    )
 
 
-def provenance_path(folder: Path) -> Path:
-    """Return the file that says how the data set below `folder` was made; it is written last."""
-    return folder / "clearance.json"
+def read(path: Path) -> Samples:
+    """Return a data set that `collect` made; `UserError` when it is missing or damaged."""
+    return Samples(**read_pool(path)[1])
 
 
 @native.using(native.PORTABLE)
@@ -203,31 +166,3 @@ def _points(recipe: ClearanceRecipe, image: Tensor, random: np.random.Generator)
     direction /= np.linalg.norm(direction, axis=0)
     around = direction * random.uniform(0, recipe.around_m, recipe.around)
     return torch.from_numpy(np.concatenate((over_view, about, around), 1)).float()
-
-
-def _shards(folder: Path, recipe: ClearanceRecipe, library: Library) -> list[tuple[Scene, Path]]:
-    content = json.dumps(_provenance(recipe, library), sort_keys=True)
-    digest = hashlib.sha256(content.encode()).hexdigest()
-    place = provenance_path(folder).with_suffix("") / digest[:16]
-    return [(scene, place / f"{scene.index:03d}.safetensors") for scene in library]
-
-
-def _make(recipe: ClearanceRecipe, scene: Scene, shard: Path) -> None:
-    samples = draw(recipe, scene)
-    parts = {"depth": samples.depth, "points": samples.points, "clearance": samples.clearance}
-    write(shard, save(parts))
-
-
-def _provenance(recipe: ClearanceRecipe, library: Library) -> dict:
-    return {
-        "recipe": recipe.model_dump(mode="json"),
-        "library_sha": library.content_hash,
-        "code_sha256": code_of(),
-    }
-
-
-def _read_provenance(path: Path) -> dict:
-    try:
-        return read_json(contents(path))
-    except (OSError, Misread):
-        return {}

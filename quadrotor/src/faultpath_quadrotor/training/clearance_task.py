@@ -1,6 +1,5 @@
 """Fitting the clearance model: its images and its loss."""
 
-import hashlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -14,10 +13,12 @@ from faultpath.plugin.system import generator
 from faultpath.plugin.training import Schedule
 from faultpath_quadrotor.perception.clearance import ClearanceModel
 from faultpath_quadrotor.perception.labels import HIGHEST_M, LOWEST_M
-from faultpath_quadrotor.platform import CLEARANCE, PLATFORM
+from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.training import clearance_data
 from faultpath_quadrotor.training.clearance_data import ClearanceRecipe, Samples
 from faultpath_quadrotor.training.fitting import ModelTask
+from faultpath_quadrotor.training.parts import CLEARANCE_POOL
+from faultpath_quadrotor.training.pool import pools_sha256
 
 VALIDATION_FROM = 90
 """Scenes of the training library from here on are never trained on: two of each topology."""
@@ -41,15 +42,14 @@ class ClearanceTask(ModelTask):
 
     def __init__(self, seed: int, data_folder: Path, recipe: ClearanceRecipe | None = None) -> None:
         self.seed = seed
-        self.platform = PLATFORM.weights_hash(CLEARANCE)
+        self.platform = PLATFORM.weights_hash(self.name)
         self.schedule = Schedule(epochs=50, batch_size=64, learning_rate=5e-4)
         self._folder = data_folder
         self._recipe = recipe or ClearanceRecipe()
 
     def load(self) -> None:
         """Read the images; make them first where they are missing."""
-        clearance_data.collect(self._folder, self._recipe, workers=0)
-        self.use(clearance_data.read(self._folder, self._recipe))
+        self.use(clearance_data.read(clearance_data.collect(self._folder, self._recipe, workers=0)))
 
     def use(self, samples: Samples) -> None:
         """Take samples from memory, split by scene."""
@@ -57,7 +57,6 @@ class ClearanceTask(ModelTask):
         self._training = samples.take(kept.nonzero()[:, 0])
         self._validation = samples.take((~kept).nonzero()[:, 0])
         self.count = len(self._training)
-        self._sha256 = _digest(samples)
         self._mirrored = torch.empty(0)
         self._chosen = torch.empty(0)
 
@@ -104,8 +103,8 @@ class ClearanceTask(ModelTask):
     @override
     def describe(self) -> Mapping[str, Any]:
         return {
-            "description": "Clearance at points from one depth image.",
-            "data_sha256": {"clearance": self._sha256},
+            "description": "obstacle clearance from depth",
+            "data_sha256": pools_sha256(self._folder, [CLEARANCE_POOL]),
             "recipe": self._recipe.model_dump(mode="json"),
             "points_in_a_minibatch": POINTS,
             "kink_m": KINK_M,
@@ -137,10 +136,3 @@ def _mirror(depth: Tensor, points: Tensor, mirrored: Tensor) -> tuple[Tensor, Te
     side = torch.where(mirrored, -1.0, 1.0)
     scale = torch.stack((torch.ones_like(side), side, torch.ones_like(side)), 1)
     return depth, points * scale[..., None]
-
-
-def _digest(samples: Samples) -> str:
-    digest = hashlib.sha256()
-    for part in vars(samples).values():
-        digest.update(part.numpy().tobytes())
-    return digest.hexdigest()

@@ -20,7 +20,7 @@ from torch import Tensor
 from faultpath_quadrotor import so3
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.platform import ControllerSettings, PerturbationSettings
-from faultpath_quadrotor.state import State
+from faultpath_quadrotor.state import Batched, State
 from faultpath_quadrotor.vehicle import (
     COLLECTIVE_MAX_N,
     CONTROL_RATE_HZ,
@@ -78,7 +78,7 @@ _TINY = 1e-12
 
 
 @dataclass(frozen=True)
-class Course:
+class Course(Batched):
     """Plan of the controller for a batch of episodes; M waypoints, N control steps, *b lanes."""
 
     waypoint_m: Tensor
@@ -132,10 +132,6 @@ class Course:
         """Return single courses as one batch, in their order."""
         names = [field.name for field in fields(cls)]
         return cls(**{n: torch.stack([getattr(c, n) for c in courses], dim=-1) for n in names})
-
-    def take(self, index: Tensor) -> Course:
-        """Return the lanes that `index` (long, [n]) picks."""
-        return Course(**{name: value[..., index] for name, value in vars(self).items()})
 
 
 class WaypointController:

@@ -66,16 +66,8 @@ def corrupted(
     keyed by its id and the model's seed (paper, Section IV-B). The draws come from streams of the
     faults' own, so initial weights and the order of minibatches are untouched.
 
-    Args:
-        faults: Faults of the readings; without any, every reader gets the readings themselves.
-        readers: Readers that the model under training has.
-        windows: Ids, one a row of every reading.
-        seed: Seed of the model.
-        readings: Values by channel, `[W, ...]`.
-
-    Raises:
-        UserError: A name is unknown, or the faults reach none of these readers.
-        NotDelivered: A fault missed a reader that it names.
+    Raises `UserError` for a name that is unknown and for faults that reach none of the readers, and
+    `NotDelivered` for a fault that missed a reader that it names.
     """
     interface = quadrotor_interface()
     resolved = resolve(faults, interface, readers)

@@ -14,29 +14,30 @@ from pathlib import Path
 from faultpath.plugin.data import locked, make_folder, sweep, write_file
 from faultpath.plugin.system import Stopped, UserError
 from faultpath.plugin.training import FitProgress, read_card
-from faultpath.plugin.work import Lost, Returned, local, run_each, tell
+from faultpath.plugin.work import Lost, Returned, local, run_each, send_message
 from faultpath_quadrotor import checkpoint, native
 from faultpath_quadrotor.checkpoint import ModelCard, checkpoint_path
 from faultpath_quadrotor.training import clearance_data, trajectories
-from faultpath_quadrotor.training.catalogue import CLEARANCE_POOL, FitJob
-from faultpath_quadrotor.training.collection import collect, is_there, recipe
+from faultpath_quadrotor.training.catalogue import CLEARANCE_POOL, TRAJECTORY_POOL, FitJob
+from faultpath_quadrotor.training.collection import collect, recipe
 from faultpath_quadrotor.training.fitting import fit
-from faultpath_quadrotor.training.provenance import provenance_path
+from faultpath_quadrotor.training.pool import is_there, pool_path
 
 
 def missing_pools(jobs: Sequence[FitJob], data: Path) -> tuple[str, ...]:
-    """Return the pools that some jobs need and the folder does not hold whole."""
-    pools = dict.fromkeys(pool for job in jobs for pool in job.entry.pools)
-    return tuple(pool for pool in pools if not provenance_path(data / pool).is_file())
+    """Return the pools that some jobs need and the folder lacks.
 
-
-def check_pools(jobs: Sequence[FitJob], data: Path) -> None:
-    """Raise `UserError` where a pool that some jobs need was made by other code, or otherwise."""
+    Raises `UserError` where a pool was made by other code, or otherwise.
+    """
+    recipes = {CLEARANCE_POOL: clearance_data.recipe, TRAJECTORY_POOL: trajectories.recipe}
+    missing: list[str] = []
     for pool in dict.fromkeys(pool for job in jobs for pool in job.entry.pools):
-        there = provenance_path(data / pool).is_file()
-        if there and pool != CLEARANCE_POOL:  # the depth images are checked where they are read
-            expected = trajectories.recipe() if pool == trajectories.POOL else recipe(pool)
-            is_there(data / f"{pool}.parquet", expected)
+        path = pool_path(data, pool)
+        if not path.is_file():
+            missing.append(pool)
+        else:
+            is_there(path, recipes[pool]() if pool in recipes else recipe(pool))
+    return tuple(missing)
 
 
 def check_pilots(jobs: Sequence[FitJob]) -> None:
@@ -44,23 +45,23 @@ def check_pilots(jobs: Sequence[FitJob]) -> None:
 
     They are flown with the package's models, among which only `--ship` puts those of this run.
     """
-    flying = [job for job in jobs if trajectories.POOL in job.entry.pools]
+    flying = [job for job in jobs if TRAJECTORY_POOL in job.entry.pools]
     for name in {name for job in flying for name in job.entry.after}:
         checkpoint_path(name, trajectories.SEED)
 
 
 def collect_missing(
-    jobs: Sequence[FitJob], data: Path, workers: int, progress: Callable[[str, float, float], None]
+    pools: Sequence[str], data: Path, workers: int, progress: Callable[[str, float, float], None]
 ) -> None:
-    """Collect the pools that are missing: training flights, closed-loop flights, depth images.
+    """Collect pools: training flights, closed-loop flights, depth images.
 
     `progress` is called with the name of a pool, the amount done and the whole amount.
     """
-    for pool in missing_pools(jobs, data):
+    for pool in pools:
         report = partial(progress, pool)
         if pool == CLEARANCE_POOL:
             clearance_data.collect(data, workers=workers, progress=report)
-        elif pool == trajectories.POOL:
+        elif pool == TRAJECTORY_POOL:
             trajectories.record(data, workers, report)
         else:
             collect(data, [pool], workers, progress=report)
@@ -164,16 +165,16 @@ def run_jobs(
 @native.using(native.PORTABLE)
 def fit_job(job: FitJob, data: Path, out: Path) -> Path:
     """Fit a model and return its file; report progress a few times a second."""
-    tell(None)  # it has begun: its data may take a while
+    send_message(None)  # it has begun: its data may take a while
     reported_s = 0.0
 
     def advance(moment: FitProgress) -> None:
         nonlocal reported_s
         if time.monotonic() - reported_s > _TELL_EVERY_S:
             reported_s = time.monotonic()
-            tell(moment)
+            send_message(moment)
 
-    return fit(job.task(data), out, advance, tell)
+    return fit(job.task(data), out, advance, send_message)
 
 
 def ship(path: Path) -> None:

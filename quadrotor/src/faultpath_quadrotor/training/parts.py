@@ -6,6 +6,8 @@ from pathlib import Path
 
 from faultpath.plugin.work import local, run_all
 
+CLEARANCE_POOL, TRAJECTORY_POOL = "clearance", "trajectory"
+
 Progress = Callable[[float, float], None]
 """Called with the amount done and the total; its first call counts existing files."""
 
@@ -28,13 +30,13 @@ def make_missing(
 
     Raises the error of the first part that fails.
     """
-    tell = progress or (lambda done, total: None)
+    report = progress or (lambda done, total: None)
     missing = [[part for part in stage if not part.path.exists()] for stage in stages]
     total = sum(part.size for stage in stages for part in stage)
     done = total - sum(part.size for stage in missing for part in stage)
-    tell(done, total)
+    report(done, total)
     with local(workers) as executor:
         for stage in missing:
             for place, _ in run_all(executor, [part.make for part in stage]):
                 done += stage[place].size
-                tell(done, total)
+                report(done, total)

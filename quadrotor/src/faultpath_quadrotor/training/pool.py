@@ -1,151 +1,218 @@
-"""A pool of training episodes on disk: rows, episodes, and where they come from.
+"""A pool of training data on disk: one file of tensors, whose note says how they were made.
 
-Three files: `<pool>.parquet` has one row a control instant, `<pool>.episodes.parquet` one row an
-episode with its vehicle, `<pool>.json` says how both were made and carries their hashes. The last
-is written last: a pool without it is not finished.
+A pool is made part by part. A part depends on nothing but the pool's recipe and its place, so a run
+that was killed loses at most the parts at work, and the next one goes on there and ends with the
+same bytes.
 """
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Sequence
+import json
+import logging
+import shutil
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import chain
+from functools import cache, partial
 from pathlib import Path
+from typing import Protocol
 
-import numpy as np
-import pyarrow as pa
-import pyarrow.parquet as pq
+import torch
+from pydantic import Field, JsonValue, ValidationError
+from torch import Tensor
 
-from faultpath.plugin.data import read_table, write
-from faultpath.plugin.system import UserError, contents
-from faultpath_quadrotor.training.provenance import read_provenance
-from faultpath_quadrotor.training.recorded import COMPONENTS, SIGNALS, Flights
-from faultpath_quadrotor.vehicle import VehicleParameters
+from faultpath import __version__
+from faultpath.plugin.data import Root, locked, packages, sweep, trees_of, write
+from faultpath.plugin.system import Frozen, Misread, UserError
+from faultpath.plugin.training import encoded, read_note, read_tensors
+from faultpath_quadrotor.training.parts import DataFile, Progress, make_missing
 
-_AXES = ("x", "y", "z")
+FORMAT = 3
+
+_log = logging.getLogger("faultpath")
+
+
+class PoolRecipe(Frozen):
+    """Settings that decide every number of a pool."""
+
+    format: int = FORMAT
+    pool: str
+    episodes: int
+    """Flights, or scenes of depth images."""
+    seed: int
+    code_sha256: str
+    """Hash of the code that makes the data, with all its settings."""
+    settings: dict[str, JsonValue] = Field(default_factory=dict[str, JsonValue])
+    """What else the caller may choose."""
+
+
+class Provenance(PoolRecipe):
+    """A recipe, the versions it was made with, and the digest of the result."""
+
+    faultpath_version: str
+    packages: dict[str, str]
+    content_sha256: str
+
+
+class PartData(Protocol):
+    """What a part holds."""
+
+    def tensors(self) -> Mapping[str, Tensor]:
+        """Return them by name, the samples along the first axis."""
+        ...
 
 
 @dataclass(frozen=True)
-class FlightData:
-    """Recorded episodes in memory, wherever they were flown."""
+class Part:
+    """Data that are made together."""
 
     name: str
-    values: np.ndarray
-    """float32 [C, R] in the order of `flight.COMPONENTS`; episodes one after the other."""
-    steps: np.ndarray
-    """Control steps of each episode, [E]; it has one row more than steps."""
-    vehicles: dict[str, np.ndarray]
-    """Fields of `Vehicle` by name, float64, [E] or [3, E]."""
-
-    @property
-    def first_row(self) -> np.ndarray:
-        """Return the row of each episode's first instant, [E]."""
-        return np.concatenate(([0], np.cumsum(self.steps + 1)[:-1]))
-
-    @classmethod
-    def decode(cls, name: str, rows: bytes, episodes: bytes) -> FlightData:
-        """Read what `encode_rows` and `encode_episodes` wrote."""
-        table, flights = read_table(rows), read_table(episodes)
-        return cls(
-            name=name,
-            values=np.stack([table.column(name).to_numpy() for name in COMPONENTS]),
-            steps=flights.column("steps").to_numpy().astype(np.int64),
-            vehicles={name: _vehicle(flights, name) for name in VehicleParameters.model_fields},
-        )
+    size: int
+    """Its weight in the progress."""
+    make: Callable[[], PartData]
+    """A function of a module bound to its arguments, so that a worker process can call it."""
 
 
-def episodes_path(path: Path) -> Path:
-    """Return where the episodes of the pool whose rows are in `path` stand."""
-    return path.with_suffix(".episodes.parquet")
+def pool_path(folder: Path, name: str) -> Path:
+    """Return the file of a pool, which is there once the pool is whole."""
+    return folder / f"{name}.safetensors"
 
 
-def encode_rows(episodes: Sequence[int], flights: Flights) -> bytes:
-    """Return the rows of a batch as a Parquet file."""
-    instants = np.arange(flights.values.shape[1])
-    kept = (instants <= flights.steps[:, None]).reshape(-1)
-    lanes = len(flights.steps)
-    columns = {
-        "episode": np.repeat(np.asarray(episodes, np.int32), len(instants))[kept],
-        "step": np.tile(instants.astype(np.int16), lanes)[kept],
-    }
-    for name, values in zip(COMPONENTS, flights.values, strict=True):
-        columns[name] = values.T.reshape(-1)[kept]
-    for name in SIGNALS["command"]:  # no command acts after an episode's last state
-        columns[name][np.cumsum(flights.steps + 1) - 1] = np.nan
-    return _write([pa.table(columns)])
+def make_pool(
+    folder: Path,
+    recipe: PoolRecipe,
+    parts: Sequence[Part],
+    workers: int,
+    progress: Progress | None = None,
+) -> Path:
+    """Make the parts of a pool that are missing, join them, and return the pool's file.
 
-
-def encode_episodes(episodes: Sequence[int], flights: Flights) -> bytes:
-    """Return the lengths and vehicles of a batch as a Parquet file."""
-    columns = {"episode": np.asarray(episodes, np.int32), "steps": flights.steps.astype(np.int16)}
-    for name in VehicleParameters.model_fields:
-        values = np.array([getattr(vehicle, name) for vehicle in flights.vehicles])
-        axes = _columns(name, values.ndim == 2)
-        columns.update(zip(axes, np.atleast_2d(values.T), strict=True))
-    return _write([pa.table(columns)])
-
-
-def write_flights(stem: Path, episodes: Sequence[int], flights: Flights) -> None:
-    """Write a batch as `<stem>.episodes` and `<stem>.rows`; the rows are written last."""
-    write(Path(f"{stem}.episodes"), encode_episodes(episodes, flights))
-    write(Path(f"{stem}.rows"), encode_rows(episodes, flights))
-
-
-def join_flights(stems: Sequence[Path]) -> tuple[bytes, bytes]:
-    """Return the rows and the episodes of batches that `write_flights` wrote.
-
-    Each batch is a row group of the two Parquet files.
+    The folder of the parts changes with anything that decides them. The number of episodes does
+    not: a larger pool uses the parts that are there. Raises `UserError` for a pool of another
+    recipe, and when `folder` cannot be written.
     """
-    return (
-        _write(read_table(contents(f"{stem}.rows")) for stem in stems),
-        _write(read_table(contents(f"{stem}.episodes")) for stem in stems),
-    )
+    path = pool_path(folder, recipe.pool)
+    if is_there(path, recipe):
+        return path
+    content = json.dumps([recipe.model_dump(mode="json", exclude={"episodes"}), packages()])
+    place = folder / f".{recipe.pool}-{hashlib.sha256(content.encode()).hexdigest()[:16]}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with locked(folder, _log.warning):
+            sweep(folder)
+            if is_there(path, recipe):  # made by another process meanwhile
+                return path
+            place.mkdir(exist_ok=True)
+            sweep(place)
+            files = [pool_path(place, part.name) for part in parts]
+            missing = [
+                DataFile(file, partial(_store, file, part.make), part.size)
+                for file, part in zip(files, parts, strict=True)
+            ]
+            make_missing([missing], workers, progress)
+            tensors = joined(files)
+            provenance = Provenance(
+                **dict(recipe),
+                faultpath_version=__version__,
+                packages=packages(),
+                content_sha256=_digest(tensors),
+            )
+            write(path, encoded(tensors, provenance.model_dump(mode="json")))
+            for old in folder.glob(f".{recipe.pool}-*"):  # also of outdated recipes
+                shutil.rmtree(old)
+    except OSError as error:
+        raise UserError(
+            f"cannot write to {folder} ({error.strerror}): choose a folder that you may write to "
+            "and that has room."
+        ) from error
+    return path
 
 
-def read_pool(path: Path) -> FlightData:
-    """Read a pool; `UserError` when it is missing, unfinished or damaged."""
+def is_there(path: Path, recipe: PoolRecipe) -> bool:
+    """Return whether a pool is finished; `UserError` for one of another recipe."""
+    provenance = read_provenance(path)
+    if provenance is None:
+        return False
+    for field in PoolRecipe.model_fields:
+        if getattr(provenance, field) != getattr(recipe, field):
+            how = "by other code" if field == "code_sha256" else f"with another '{field}'"
+            raise UserError(
+                f"the pool at {path} was collected {how}, with faultpath "
+                f"{provenance.faultpath_version}: choose another folder, or delete the file to "
+                "collect it again."
+            )
+    return True
+
+
+def read_provenance(path: Path) -> Provenance | None:
+    """Return where a pool comes from, `None` where there is none; `UserError` if damaged."""
+    try:
+        return Provenance.model_validate(read_note(path))
+    except (FileNotFoundError, NotADirectoryError):
+        return None
+    except (OSError, Misread, ValidationError) as error:
+        raise _damaged(path) from error
+
+
+def read_pool(path: Path) -> tuple[str, dict[str, Tensor]]:
+    """Return a pool's name and tensors; `UserError` when it is missing or damaged."""
     provenance = read_provenance(path)
     if provenance is None:
         raise UserError(f"there is no finished pool at {path}: collect it first.")
-    rows = _read(path, provenance.rows_sha256)
-    episodes = _read(episodes_path(path), provenance.episodes_sha256)
-    return FlightData.decode(provenance.pool, rows, episodes)
-
-
-def _read(path: Path, sha256: str) -> bytes:
     try:
-        data = contents(path)
-    except OSError as error:
-        raise UserError(
-            f"cannot read {path} ({error.strerror}): delete the pool and collect it again."
-        ) from error
-    if hashlib.sha256(data).hexdigest() != sha256:
-        raise UserError(
-            f"{path} is not the file that its pool was finished with: delete the pool and collect "
-            "it again."
-        )
-    return data
+        tensors = read_tensors(path)[1]
+    except (OSError, Misread) as error:
+        raise _damaged(path) from error
+    if _digest(tensors) != provenance.content_sha256:
+        raise _damaged(path)
+    return provenance.pool, tensors
 
 
-def _vehicle(episodes: pa.Table, name: str) -> np.ndarray:
-    columns = _columns(name, f"{name}_x" in episodes.column_names)
-    values = np.stack([episodes.column(column).to_numpy() for column in columns])
-    return values if len(columns) > 1 else values[0]
+def pools_sha256(data: Path, pools: Iterable[str]) -> dict[str, str]:
+    """Return the digest of each pool in a folder, as far as it is finished."""
+    known = {name: read_provenance(pool_path(data, name)) for name in pools}
+    return {name: pool.content_sha256 for name, pool in known.items() if pool is not None}
 
 
-def _columns(name: str, by_axis: bool) -> list[str]:
-    return [f"{name}_{axis}" for axis in _AXES] if by_axis else [name]
+def store(path: Path, data: PartData) -> None:
+    """Write a part; `OSError` when the disk will not."""
+    write(path, encoded(data.tensors()))
 
 
-def _write(tables: Iterable[pa.Table]) -> bytes:
-    """Return tables as row groups of a file; floats split by byte compress better under zstd."""
-    sink, others = pa.BufferOutputStream(), iter(tables)
-    first = next(others)
-    floats = [field.name for field in first.schema if pa.types.is_floating(field.type)]
-    split = dict.fromkeys(floats, "BYTE_STREAM_SPLIT")
-    options = {"compression": "zstd", "use_dictionary": False, "column_encoding": split}
-    with pq.ParquetWriter(sink, first.schema, **options) as writer:
-        for table in chain((first,), others):
-            writer.write_table(table)
-    return sink.getvalue().to_pybytes()
+def joined(files: Iterable[Path]) -> dict[str, Tensor]:
+    """Return the tensors of some parts that `store` wrote, one behind the other."""
+    parts = [read_tensors(file)[1] for file in files]
+    return {name: torch.cat([part[name] for part in parts]) for name in parts[0]}
+
+
+@cache
+def code_of(*packages: str) -> str:
+    """Return a hash of the Python sources of some packages, of the quadrotor and of faultpath.
+
+    Data that they made are made again when one of these files changes.
+    """
+    names = (*packages, "faultpath_quadrotor", "faultpath")
+    trees = [tree for tree in trees_of(map(Root, names))[0] if tree.package in names]
+    digests = {
+        (tree.package, path.relative_to(tree.folder).as_posix()): digest
+        for tree in trees
+        for path, digest in tree.digests.items()
+        if path.suffix == ".py"
+    }
+    return hashlib.sha256(repr(sorted(digests.items())).encode()).hexdigest()[:32]
+
+
+def _store(path: Path, make: Callable[[], PartData]) -> None:
+    store(path, make())
+
+
+def _digest(tensors: Mapping[str, Tensor]) -> str:
+    digest = hashlib.sha256()
+    for name, value in sorted(tensors.items()):
+        digest.update(f"{name} {value.dtype} {list(value.shape)}".encode())
+        digest.update(value.contiguous().numpy().tobytes())
+    return digest.hexdigest()
+
+
+def _damaged(path: Path) -> UserError:
+    return UserError(f"{path} is damaged, or no pool: delete it and collect it again.")

@@ -1,7 +1,6 @@
 """Fitting of the learned predictors (paper, Section IV-A)."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,8 @@ from typing_extensions import override
 from faultpath.plugin.system import generator
 from faultpath.plugin.training import Schedule
 from faultpath_quadrotor import so3
-from faultpath_quadrotor.models import PREDICTORS
+from faultpath_quadrotor.choices import PREDICTORS
+from faultpath_quadrotor.models import blank_predictor
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.predictors import (
     AnchoredPredictor,
@@ -25,7 +25,7 @@ from faultpath_quadrotor.predictors.network import features
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.training.corruption import DCC_HALF_RANGE, corrupted, dcc
 from faultpath_quadrotor.training.fitting import ModelTask
-from faultpath_quadrotor.training.provenance import rows_sha256
+from faultpath_quadrotor.training.pool import pool_path, pools_sha256
 from faultpath_quadrotor.training.windows import (
     HISTORY,
     HORIZON,
@@ -40,22 +40,14 @@ BATCH_SIZE = 256  # paper, Section IV-A
 PARTS = ("position", "velocity", "rotation", "rate")
 
 
-@dataclass(frozen=True)
-class PredictorRecipe:
-    """Data that a predictor learns from, and for how long (paper, Section IV-A)."""
-
-    pools: tuple[str, ...]
-    epochs: int
-    description: str
-
-
-_BOTH = ("nominal", "wind")
-RECIPES: Mapping[str, PredictorRecipe] = {
-    "wm-a": PredictorRecipe(("nominal",), 10, "physics-anchored"),
-    "wm-u": PredictorRecipe(("nominal",), 30, "unanchored"),
-    "wm-a-wind": PredictorRecipe(_BOTH, 10, "wind-conditioned anchored"),
-    "wm-a-nowind": PredictorRecipe(_BOTH, 10, "wind-withheld anchored"),
+_NOMINAL, _BOTH = ("nominal",), ("nominal", "wind")
+RECIPES = {
+    "wm-a": (_NOMINAL, 10),
+    "wm-u": (_NOMINAL, 30),
+    "wm-a-wind": (_BOTH, 10),
+    "wm-a-nowind": (_BOTH, 10),
 }
+"""Pools and epochs (paper, Section IV-A)."""
 
 
 class PredictorTask(ModelTask):
@@ -72,16 +64,20 @@ class PredictorTask(ModelTask):
         self.name = name
         self.seed = seed
         self.order_key = name.removesuffix(DCC)
-        self._recipe = RECIPES[self.order_key]
-        self.schedule = Schedule(epochs=self._recipe.epochs, batch_size=BATCH_SIZE)
+        self._pools, epochs = RECIPES[self.order_key]
+        self.schedule = Schedule(epochs=epochs, batch_size=BATCH_SIZE)
         self._data = data
         self._half_range = half_range
         self.platform = PLATFORM.weights_hash(name)
 
     def load(self) -> None:
         """See `ModelTask.load`; several pools contribute equally many windows."""
-        pools = [windows_of(self._data / f"{name}.parquet") for name in self._recipe.pools]
-        training, self._validation = _equal_mix(pools)
+        pools = [windows_of(pool_path(self._data, name)).split() for name in self._pools]
+        fewest = min(len(training) for training, _ in pools)
+        training = Windows.join(
+            [part.take(torch.arange(fewest) * len(part) // fewest) for part, _ in pools]
+        )
+        self._validation = Windows.join([validation for _, validation in pools])
         self._train, self.count = training, len(training)
         self._scales = scales(training)
         readers = self._blank().readers()
@@ -122,9 +118,8 @@ class PredictorTask(ModelTask):
     @override
     def describe(self) -> Mapping[str, Any]:
         return {
-            "description": f"{self._recipe.description} predictor"
-            + (", fitted with calibration noise" if self.is_dcc else ""),
-            "data_sha256": rows_sha256(self._data, self._recipe.pools),
+            "description": PREDICTORS[self.name],
+            "data_sha256": pools_sha256(self._data, self._pools),
             "history": HISTORY,
             "horizon": HORIZON,
             "calibration_half_range": self._half_range if self.is_dcc else 0.0,
@@ -133,7 +128,7 @@ class PredictorTask(ModelTask):
         }
 
     def _blank(self) -> AnchoredPredictor | UnanchoredPredictor:
-        predictor = PREDICTORS[self.order_key].build()
+        predictor = blank_predictor(self.order_key)
         assert isinstance(predictor, AnchoredPredictor | UnanchoredPredictor)
         return predictor
 
@@ -162,14 +157,6 @@ def error(predicted: Sequence[State], windows: Windows, scale: Mapping[str, Tens
     return torch.stack(parts).mean()
 
 
-def _equal_mix(pools: list[Windows]) -> tuple[Windows, Windows]:
-    halves = [pool.split() for pool in pools]
-    training = [half[0] for half in halves]
-    fewest = min(len(windows) for windows in training)
-    mixed = [windows.take(torch.arange(fewest) * len(windows) // fewest) for windows in training]
-    return Windows.join(mixed), Windows.join([half[1] for half in halves])
-
-
 def _measure(network: LatentNetwork, windows: Windows) -> None:
     """Store the training windows' statistics, under true calibration, in the network."""
     state = windows.state(HISTORY)
@@ -179,12 +166,9 @@ def _measure(network: LatentNetwork, windows: Windows) -> None:
     network.feature_mean.copy_(raw.mean(1, keepdim=True))
     network.feature_std.copy_(raw.std(1, keepdim=True))
     if isinstance(network, UnanchoredNetwork):
-        network.increment_std.copy_(_increments(windows).std(1, keepdim=True))
-
-
-def _increments(windows: Windows) -> Tensor:
-    old, new = windows.state(HISTORY), windows.state(HISTORY + 1)
-    turned = so3.log(so3.compose(old.rotation.transpose(0, 1), new.rotation))
-    return torch.cat(
-        [new.position - old.position, new.velocity - old.velocity, new.rate - old.rate, turned]
-    )
+        ahead = windows.state(HISTORY + 1)
+        moved = [
+            getattr(ahead, name) - getattr(state, name) for name in ("position", "velocity", "rate")
+        ]
+        turned = so3.log(so3.compose(state.rotation.transpose(0, 1), ahead.rotation))
+        network.increment_std.copy_(torch.cat([*moved, turned]).std(1, keepdim=True))

@@ -15,8 +15,10 @@ from typing_extensions import override
 
 from faultpath.plugin.system import generator
 from faultpath.plugin.training import Schedule
-from faultpath_quadrotor.platform import PLATFORM
-from faultpath_quadrotor.reconstruction.network import WindNetwork
+from faultpath_quadrotor.choices import RECONSTRUCTIONS
+from faultpath_quadrotor.models import blank_reconstruction
+from faultpath_quadrotor.platform import PLATFORM, TRAJECTORY
+from faultpath_quadrotor.reconstruction import RecurrentReconstruction, WindNetwork
 from faultpath_quadrotor.training.corruption import (
     DCC_HALF_RANGE,
     STATE_STD,
@@ -25,20 +27,17 @@ from faultpath_quadrotor.training.corruption import (
     state_noise,
 )
 from faultpath_quadrotor.training.fitting import ModelTask
-from faultpath_quadrotor.training.provenance import rows_sha256
+from faultpath_quadrotor.training.parts import TRAJECTORY_POOL
+from faultpath_quadrotor.training.pool import pool_path, pools_sha256
 from faultpath_quadrotor.training.windows import HISTORY, Windows, every_history, windows_of
 
 HEAD, PAST = "reconstruction.head", "reconstruction.history"
-TRAJECTORY_POOL = "trajectory"
 
 
 @dataclass(frozen=True)
 class Model:
     """Settings in which the models differ."""
 
-    description: str
-    pool: str = "wind"
-    calibrated: bool = True
     half_range: float | None = None
     """Half range of the noise on the head's calibration; `None`: there is no noise."""
     moves: bool = False
@@ -46,20 +45,11 @@ class Model:
 
 
 MODELS: Mapping[str, Model] = {
-    "gru": Model("Wind from twelve completed intervals and calibration."),
-    "gru+dcc": Model(
-        "The same, trained with noise on the calibration that enters its head.",
-        half_range=DCC_HALF_RANGE,
-    ),
-    "gru+state": Model("The same, trained with noise on the motion in its history.", moves=True),
-    "gru-withheld": Model(
-        "Wind from twelve completed intervals alone, without calibration.", calibrated=False
-    ),
-    "gru-trajectory": Model(
-        "Wind from twelve completed intervals alone, learned in closed loop.",
-        pool=TRAJECTORY_POOL,
-        calibrated=False,
-    ),
+    "gru": Model(),
+    "gru+dcc": Model(half_range=DCC_HALF_RANGE),
+    "gru+state": Model(moves=True),
+    "gru-withheld": Model(),
+    "gru-trajectory": Model(),
 }
 """The reference module, its repair, the control without calibration, and the one that learns from
 closed-loop flights, which has no calibration input (paper, Section V-A and V-B)."""
@@ -94,14 +84,17 @@ class ReconstructionTask(ModelTask):
         self.platform = PLATFORM.weights_hash(name)
         self.schedule = Schedule(epochs=40, batch_size=256, optimiser="adam")  # paper, appendix
         self._model = MODELS[name]
+        self._pool = TRAJECTORY_POOL if name == TRAJECTORY else "wind"
         self._data = data_folder
         self.order_key = name.partition("+")[0]
-        self._scaled = WindNetwork(self._model.calibrated)
+        blank = blank_reconstruction(name)
+        assert isinstance(blank, RecurrentReconstruction)
+        self._scaled = blank.network
 
     @override
     def load(self) -> None:
-        windows = every_history if self._model.pool == TRAJECTORY_POOL else windows_of
-        self.use(*windows(self._data / f"{self._model.pool}.parquet").split())
+        windows = every_history if self._pool == TRAJECTORY_POOL else windows_of
+        self.use(*windows(pool_path(self._data, self._pool)).split())
 
     def use(self, training: Windows, validation: Windows) -> None:
         """Take windows from memory, and the scales of inputs from the training ones."""
@@ -110,7 +103,7 @@ class ReconstructionTask(ModelTask):
         self._training = _Samples.of(training, self._scaled, errors)
         self.count = len(training.ids)
         self._validation = _Samples.of(validation, self._scaled)
-        self._supplied = self._calibration(training.ids) if self._model.calibrated else None
+        self._supplied = self._calibration(training.ids) if self._scaled.calibrated else None
 
     @override
     def module(self) -> nn.Module:
@@ -140,9 +133,9 @@ class ReconstructionTask(ModelTask):
     @override
     def describe(self) -> Mapping[str, Any]:
         return {
-            "description": self._model.description,
-            "data_sha256": rows_sha256(self._data, [self._model.pool]),
-            "calibration_inputs": self._model.calibrated,
+            "description": RECONSTRUCTIONS[self.name],
+            "data_sha256": pools_sha256(self._data, [self._pool]),
+            "calibration_inputs": self._scaled.calibrated,
             "calibration_noise_half_range": self._model.half_range,
             **({"motion_noise_std": STATE_STD} if self._model.moves else {}),
         }

@@ -1,6 +1,10 @@
 """Records of flights at every control instant, whoever flew them."""
 
+from __future__ import annotations
+
+from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import torch
@@ -9,6 +13,7 @@ from torch import Tensor
 
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.plant import PlantState
+from faultpath_quadrotor.training.pool import read_pool
 from faultpath_quadrotor.vehicle import VehicleParameters
 
 SIGNALS = {
@@ -35,6 +40,51 @@ class Flights:
     """Control steps of each episode before it ended, [B]. Its states are 0..steps; what comes
     after them is not part of it."""
     vehicles: tuple[VehicleParameters, ...]
+
+    def tensors(self) -> dict[str, Tensor]:
+        """Return what a pool keeps: the instants of all episodes, [R, C], lengths and vehicles."""
+        kept = np.arange(self.values.shape[1]) <= self.steps[:, None]
+        rows = self.values.transpose(2, 1, 0)[kept]
+        acting = [COMPONENTS.index(component) for component in SIGNALS["command"]]
+        rows[np.cumsum(self.steps + 1)[:, None] - 1, acting] = np.nan  # none acts after the end
+        columns = {"values": rows, "steps": self.steps.astype(np.int64)}
+        for name in VehicleParameters.model_fields:
+            columns[name] = np.array([getattr(vehicle, name) for vehicle in self.vehicles])
+        return {name: torch.from_numpy(column) for name, column in columns.items()}
+
+
+@dataclass(frozen=True)
+class FlightData:
+    """Recorded episodes in memory, wherever they were flown."""
+
+    name: str
+    values: np.ndarray
+    """float32 [C, R] in the order of `COMPONENTS`; episodes one after the other."""
+    steps: np.ndarray
+    """Control steps of each episode, [E]; it has one row more than steps."""
+    vehicles: dict[str, np.ndarray]
+    """Fields of `Vehicle` by name, float64, [E] or [3, E]."""
+
+    @property
+    def first_row(self) -> np.ndarray:
+        """Return the row of each episode's first instant, [E]."""
+        return np.concatenate(([0], np.cumsum(self.steps + 1)[:-1]))
+
+    @classmethod
+    def read(cls, path: Path) -> FlightData:
+        """Read a pool; `UserError` when it is missing, unfinished or damaged."""
+        return cls.of(*read_pool(path))
+
+    @classmethod
+    def of(cls, name: str, tensors: Mapping[str, Tensor]) -> FlightData:
+        """Return the flights in the tensors of a pool or of a part."""
+        columns = {name: value.numpy().T for name, value in tensors.items()}
+        return cls(
+            name=name,
+            values=np.ascontiguousarray(columns["values"]),
+            steps=columns["steps"],
+            vehicles={name: columns[name] for name in VehicleParameters.model_fields},
+        )
 
 
 def blank_values(steps: int, count: int) -> NDArray[np.float32]:

@@ -13,9 +13,10 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from faultpath.loop import Batch, Taps
+from faultpath.loop import Batch
 from faultpath.plugin.data import system_code
-from faultpath.run import SystemSpec
+from faultpath.plugin.recording import taps_of
+from faultpath.run import SystemSpec, Treatment
 from faultpath_quadrotor import native
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.plant.module import ACTION, Flying
@@ -23,9 +24,8 @@ from faultpath_quadrotor.plant.world import CONTROL_STEPS
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.training import recorded
-from faultpath_quadrotor.training.collection import EpisodeBatch, make_pool
-from faultpath_quadrotor.training.parts import Progress
-from faultpath_quadrotor.training.provenance import PoolRecipe, code_of
+from faultpath_quadrotor.training.parts import TRAJECTORY_POOL, Progress
+from faultpath_quadrotor.training.pool import Part, PoolRecipe, code_of, make_pool
 from faultpath_quadrotor.training.recorded import Flights, blank_values
 from faultpath_quadrotor.vehicle import CONTROL_RATE_HZ
 
@@ -37,16 +37,7 @@ def record_flights(system: Quadrotor, variant: str, scenes: Sequence[str], seed:
     Scene by scene in their order. `seed` is that of the planner's noise and of the variant's
     training. A scene's flight does not depend on the others, bit for bit.
     """
-    wired = system.variants[variant]
-    taps = Taps(
-        system.interface,
-        scenes=tuple(scenes),
-        dt_s=system.control_dt_s,
-        seed=seed,
-        bindings=wired.bindings,
-        readers=wired.readers,
-        privileged=wired.privileged,
-    )
+    taps = taps_of(system, Treatment(variant=variant, seed=seed), scenes)
     batch = Batch(tuple(scenes), seed, system.control_dt_s)
     values, world = blank_values(CONTROL_STEPS, len(scenes)), None
     for instant in system.loop(variant, seed).execute(batch, taps):
@@ -61,7 +52,6 @@ def record_flights(system: Quadrotor, variant: str, scenes: Sequence[str], seed:
     return Flights(values, steps, tuple(system.scene(scene).vehicle for scene in scenes))
 
 
-POOL = "trajectory"
 LIBRARY = "selection"
 SCENES = 70
 LEVELS = ("L1", "L2", "L3")
@@ -77,12 +67,8 @@ def record(folder: Path, workers: int = 2, progress: Progress | None = None) -> 
     predictor's checkpoint is missing.
     """
     batches = [
-        EpisodeBatch(
-            f"{level}-{first:03d}",
-            range(count * SCENES + first, count * SCENES + first + BLOCK),
-            partial(fly, level, first),
-        )
-        for count, level in enumerate(LEVELS)
+        Part(f"{level}-{first:03d}", BLOCK, partial(fly, level, first))
+        for level in LEVELS
         for first in range(0, SCENES, BLOCK)
     ]
     return make_pool(folder, recipe(), batches, workers, progress)
@@ -95,7 +81,9 @@ def recipe() -> PoolRecipe:
     settings = (LIBRARY, SCENES, LEVELS, VARIANT, SEED, BLOCK, PLATFORM.hash)
     content = repr((sorted(state.data.items()), state.given, code_of(), *settings))
     code = hashlib.sha256(content.encode()).hexdigest()
-    return PoolRecipe(pool=POOL, episodes=len(LEVELS) * SCENES, seed=SEED, code_sha256=code)
+    return PoolRecipe(
+        pool=TRAJECTORY_POOL, episodes=len(LEVELS) * SCENES, seed=SEED, code_sha256=code
+    )
 
 
 @native.using(native.PORTABLE)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -11,13 +10,13 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from faultpath.plugin.training import validates
 from faultpath_quadrotor.predictors import Physics, Predictor
 from faultpath_quadrotor.predictors.history import STEPS
 from faultpath_quadrotor.predictors.predictor_inputs import Take, history, predictor_inputs
 from faultpath_quadrotor.predictors.rollout import unroll
 from faultpath_quadrotor.state import State
-from faultpath_quadrotor.training.pool import FlightData, read_pool
-from faultpath_quadrotor.training.recorded import COMPONENTS, SIGNALS
+from faultpath_quadrotor.training.recorded import COMPONENTS, SIGNALS, FlightData
 
 HISTORY = STEPS
 HORIZON = 20  # paper, Section IV-A
@@ -103,12 +102,10 @@ class Windows:
     def split(self, fraction_validation: float = 0.05) -> tuple[Windows, Windows]:
         """Return the windows for training and those for validation, by episode.
 
-        A hash of pool and episode decides, so an episode is on the same side whatever else is
-        collected, joined or taken.
+        Pool and episode decide alone, whatever else is collected, joined or taken.
         """
         episodes = [name.rpartition("/")[0] for name in self.ids]
-        draws = {name: _unit(name) for name in dict.fromkeys(episodes)}
-        held_out = torch.tensor([draws[name] < fraction_validation for name in episodes])
+        held_out = torch.from_numpy(validates(episodes, fraction_validation))
         return self.take(~held_out), self.take(held_out)
 
     @classmethod
@@ -130,14 +127,14 @@ def windows_of(pool_path: Path) -> Windows:
 
     A pool of the paper gets the paper's number of windows, spread evenly over all possible ones.
     """
-    windows = cut(read_pool(pool_path))
+    windows = cut(FlightData.read(pool_path))
     count, every = COUNTS.get(pool_path.stem, len(windows)), len(windows)
     return windows if count >= every else windows.take(torch.arange(count) * every // count)
 
 
 def every_history(pool_path: Path) -> Windows:
     """Return every window of 12 intervals of a pool, without a future; raises as `windows_of`."""
-    return cut(read_pool(pool_path), 1, HISTORY)
+    return cut(FlightData.read(pool_path), 1, HISTORY)
 
 
 def starts(steps: int, stride: int = STRIDE, length: int = COMMANDS) -> list[int]:
@@ -184,11 +181,6 @@ def cut(pool: FlightData, stride: int = STRIDE, length: int = COMMANDS) -> Windo
         return values[0] if name == "motor_thrust_n" else values
 
     return Windows._build(tensor, tuple(f"{pool.name}/{e:05d}/{i}" for e, i, _ in table.tolist()))
-
-
-def _unit(name: str) -> float:
-    digest = hashlib.blake2b(name.encode(), digest_size=8, person=b"validation").digest()
-    return int.from_bytes(digest, "little") / 2**64
 
 
 DeliveredInputs = Mapping[tuple[str, str], Tensor]

@@ -127,9 +127,8 @@ def result_table(cards: "Sequence[ModelCard]") -> "Table":
 
 
 def _collect(console: "SafeConsole", jobs: "Sequence[FitJob]", data: Path, workers: int) -> None:
-    from faultpath_quadrotor.training.jobs import check_pools, collect_missing, missing_pools
+    from faultpath_quadrotor.training.jobs import collect_missing, missing_pools
 
-    check_pools(jobs, data)
     missing = missing_pools(jobs, data)
     if not missing:
         return
@@ -141,7 +140,7 @@ def _collect(console: "SafeConsole", jobs: "Sequence[FitJob]", data: Path, worke
             bar.update(tasks[pool], total=total, completed=done, news=news)
 
         try:
-            collect_missing(jobs, data, workers, show)
+            collect_missing(missing, data, workers, show)
         except KeyboardInterrupt:
             raise Stopped(
                 f"interrupted while collecting; what was flown is kept in {data}; run the same "

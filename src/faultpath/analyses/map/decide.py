@@ -15,7 +15,7 @@ from faultpath.analyses.map.lattice import (
     sizes,
     surface_weights,
 )
-from faultpath.analyses.map.model import Flip, MapPoint, MapSurface, ResolvedMap
+from faultpath.analyses.map.model import Flip, MapFacts, MapPoint, MapSurface
 from faultpath.analyses.map.record import MapRecord
 from faultpath.analyses.map.surface import (
     Combined,
@@ -25,11 +25,13 @@ from faultpath.analyses.map.surface import (
     simultaneous,
 )
 from faultpath.analyses.model import Invalid
+from faultpath.run.question import MapQuestion
 from faultpath.stats.estimate import Sign
 
 
 def decided(
-    question: ResolvedMap,
+    question: MapQuestion,
+    facts: MapFacts,
     differences: Differences,
     failed: int = 0,
     findings: Sequence[str] = (),
@@ -43,26 +45,27 @@ def decided(
     """
     points, between = np.eye(len(differences.points)), surface_weights(differences.points)
     # One critical value for all places that are shown.
-    z = simultaneous(np.concatenate([points, between]), differences, question.library_hash)
+    z = simultaneous(np.concatenate([points, between]), differences, facts.library_hash)
     at, surface = Combined.of(points, differences), Combined.of(between, differences)
     decided, shaded = (part.signs(z) * (invalid is None) for part in (at, surface))
     signs = dict(zip(differences.points, decided.tolist(), strict=True))
     side = 2 * UNITS // SHOWN + 1
     return MapRecord(
         question=question,
+        facts=facts,
         scenes=differences.values.shape[1],
         invalid=invalid,
-        points=_points(question, differences, at, decided, z),
+        points=_points(facts, differences, at, decided, z),
         surface=MapSurface(
-            sizes=tuple(question.size(u) for u in range(-UNITS, UNITS + 1, SHOWN)),
+            sizes=tuple(facts.size(u) for u in range(-UNITS, UNITS + 1, SHOWN)),
             difference=tuple(tuple(map(float, row)) for row in surface.means.reshape(side, side)),
             sign=tuple(tuple(sign_of(v) for v in row) for row in shaded.reshape(side, side)),
         ),
         flips=tuple(
-            _flip(condition, sign_of(direction), differences, way, signs, question.up_to)
-            for (condition, direction), way in rays(question.against).items()
+            _flip(condition, sign_of(direction), differences, way, signs, facts.up_to)
+            for (condition, direction), way in rays(facts.modules).items()
         ),
-        joint=joint(question, differences),
+        joint=joint(facts, differences, question.correlation),
         critical=z,
         failed=failed,
         findings=tuple(findings),
@@ -70,13 +73,13 @@ def decided(
 
 
 def _points(
-    question: ResolvedMap, differences: Differences, at: Combined, signs: Signs, z: float
+    facts: MapFacts, differences: Differences, at: Combined, signs: Signs, z: float
 ) -> tuple[MapPoint, ...]:
     low, high = at.ends(z)
     means = at.means
     return tuple(
         MapPoint(
-            errors=(question.size(x), question.size(y)),
+            errors=(facts.size(x), facts.size(y)),
             baseline_percent=100.0 * float(differences.baseline[i].mean()),
             repair_percent=100.0 * float(differences.repair[i].mean()),
             difference=float(means[i]),

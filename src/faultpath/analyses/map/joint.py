@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from faultpath.analyses.map.lattice import SHOWN, UNITS, surface_weights
-from faultpath.analyses.map.model import CorrelationRegion, Expectation, JointErrors, ResolvedMap
+from faultpath.analyses.map.model import CorrelationRegion, Expectation, JointErrors, MapFacts
 from faultpath.analyses.map.surface import Combined, Differences, sign_of, simultaneous
 from faultpath.stats.breakeven import pieces_of
 from faultpath.stats.distributions import normal_quantile
@@ -84,16 +84,19 @@ def lattice_weights(errors: Errors, correlation: float) -> Floats:
     return totals
 
 
-def joint(question: ResolvedMap, differences: Differences) -> JointErrors:
-    """Return the expected difference over all correlations, and where it is decided."""
-    (m1, m2), (s1, s2), largest = question.means, question.spreads, question.up_to
+def joint(
+    facts: MapFacts, differences: Differences, correlation: float | None = None
+) -> JointErrors:
+    """Return the expected difference over all correlations and at one of them, and where it is
+    decided."""
+    (m1, m2), (s1, s2), largest = facts.means, facts.spreads, facts.up_to
     errors = Errors((m1 / largest, m2 / largest), (s1 / largest, s2 / largest))
     surface = surface_weights(differences.points)
 
     def weights(correlations: Sequence[float]) -> Floats:
         return np.stack([lattice_weights(errors, r) for r in correlations]) @ surface
 
-    z = simultaneous(weights(_GRID.tolist()), differences, question.library_hash)
+    z = simultaneous(weights(_GRID.tolist()), differences, facts.library_hash)
 
     def at(correlations: Sequence[float]) -> Combined:
         return Combined.of(weights(correlations), differences)
@@ -112,10 +115,10 @@ def joint(question: ResolvedMap, differences: Differences) -> JointErrors:
     edges = [-1.0, *(edge for piece in pieces for edge in piece), 1.0]
     spans = [(a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if a < b]
     means: list[float] = at([0.5 * (a + b) for a, b in spans]).means.tolist() if spans else []
-    requested = {0.0, 1.0} if question.correlation is None else {0.0, 1.0, question.correlation}
+    requested = {0.0, 1.0} if correlation is None else {0.0, 1.0, correlation}
     return JointErrors(
         curve=expected(_CURVE),
-        asked=expected(sorted(requested)),
+        requested=expected(sorted(requested)),
         estimates=_crossings(at(_GRID.tolist()).means),
         undecided=pieces,
         regions=tuple(

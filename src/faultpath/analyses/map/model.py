@@ -1,25 +1,23 @@
-"""The question and the record of a map: what was run, what is decided, and how it is said."""
+"""The facts and the result of a map: what was run, and what is decided."""
 
 from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
+from faultpath.analyses.facts import Facts
 from faultpath.analyses.map.lattice import UNITS
 from faultpath.analyses.model import Invalid
-from faultpath.analyses.question import Resolved
 from faultpath.analyses.sentences.wording import MINUS
 from faultpath.core.results import Result
+from faultpath.run.question import MapQuestion
 from faultpath.stats.estimate import Sign
 
 
-class ResolvedMap(Resolved, allow_inf_nan=False):
-    """The question of a map, as its record keeps it."""
+class MapFacts(Facts, allow_inf_nan=False):
+    """What a system and its library told of a map, with the defaults that follow."""
 
-    baseline: str
-    repair: str
-    fault: str
-    """Without a size: `gain`, `gain:offset`, `calibration`."""
-    against: tuple[str, str]
+    n_scenes: int
+    modules: tuple[str, str]
     """The modules at which the error acts: across and upward in the picture."""
     others: tuple[str, ...] = ()
     """Readers of the same source that get it without error."""
@@ -31,28 +29,16 @@ class ResolvedMap(Resolved, allow_inf_nan=False):
     means: tuple[float, float]
     spreads: tuple[float, float]
     """Standard deviations of the joint distribution."""
-    correlation: float | None = Field(default=None, ge=-1, le=1)
-    points: int
-    """As many are run before those that bisect."""
-    library: str
-    library_hash: str
-    n_scenes: int
-    seeds: tuple[int, ...]
-    trained: bool = False
 
     def size(self, units: int) -> float:
         """Return an error from a coordinate of a point."""
         return round(self.up_to * units / UNITS, 12) + 0.0
 
-    def said(self, size: float) -> str:
+    def size_label(self, size: float) -> str:
         """Return a size in words: `+20 %`, or `+0.2 m`."""
         if self.relative:
             return f"{100 * size:+.3g} %".replace("-", MINUS) if size else "0 %"
         return f"{size:+.3g} {self.unit}".replace("-", MINUS).removesuffix(" 1")
-
-    def winner(self, sign: int) -> str:
-        """Return the variant of a decided side."""
-        return self.repair if sign > 0 else self.baseline
 
 
 class MapPoint(Result, allow_inf_nan=False):
@@ -131,8 +117,8 @@ class JointErrors(Result, allow_inf_nan=False):
     interpolated between the points, whose error no interval here includes."""
 
     curve: tuple[Expectation, ...]
-    asked: tuple[Expectation, ...]
-    """At the correlations 0 and 1, and at the one that was asked for."""
+    requested: tuple[Expectation, ...]
+    """At the correlations 0 and 1, and at the requested one."""
     estimates: tuple[float, ...]
     """Where the estimate crosses zero: the break-even correlation, if there is just one."""
     undecided: tuple[tuple[float, float], ...]
@@ -146,8 +132,9 @@ class JointErrors(Result, allow_inf_nan=False):
 class MapResult(Result, allow_inf_nan=False):
     """The numbers of a map, decided; written as `map.json`."""
 
-    format: Literal[2] = 2
-    question: ResolvedMap
+    format: Literal[3] = 3
+    question: MapQuestion
+    facts: MapFacts
     scenes: int
     """Compared: those without a void pair at any point."""
     invalid: Invalid | None = None
@@ -161,3 +148,7 @@ class MapResult(Result, allow_inf_nan=False):
     failed: int
     """Trials in which the program raised an error; each voids its scene at every point."""
     findings: tuple[str, ...] = ()
+
+    def winner(self, sign: int) -> str:
+        """Return the variant of a decided side."""
+        return self.question.repair if sign > 0 else self.question.baseline

@@ -9,14 +9,14 @@ import numpy as np
 
 from faultpath.analyses.analysis import Analysis, Round, Rounds
 from faultpath.analyses.compared import compared
+from faultpath.analyses.facts import facts_of, question_of
 from faultpath.analyses.map.decide import decided
 from faultpath.analyses.map.lattice import COARSE, Point, lattice
-from faultpath.analyses.map.model import ResolvedMap
+from faultpath.analyses.map.model import MapFacts
 from faultpath.analyses.map.record import MapRecord
 from faultpath.analyses.map.surface import Differences, next_points
 from faultpath.analyses.model import CORRECT, Invalid
 from faultpath.analyses.planning import rows_of, scenes_of, two_variants
-from faultpath.analyses.question import resolve
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed
 from faultpath.faults import Fault, FaultText, at_readers, describe, reaching
@@ -41,8 +41,8 @@ class MapPlan(Analysis[list[Point]]):
 
     noun = "pairs of errors"
 
-    request: MapQuestion
-    question: ResolvedMap
+    question: MapQuestion
+    facts: MapFacts
     spec: SystemSpec
     fault: FaultText
     """Without a size."""
@@ -62,7 +62,7 @@ class MapPlan(Analysis[list[Point]]):
         while True:
             table = yield Round(study, len(points), expected, notice)
             differences, _ = self.differences(points, table)
-            modules, most, drawn = question.against, question.points, question.library_hash
+            modules, most, drawn = self.facts.modules, question.points, self.facts.library_hash
             new = next_points(differences, modules, most, drawn)
             if not new:
                 return points
@@ -79,11 +79,13 @@ class MapPlan(Analysis[list[Point]]):
         invalid: Invalid | None = "unpaired" if unlike else None
         if not deliveries.repeats:
             invalid = "unrepeatable"
-        return decided(self.question, differences, int(trials.failed.sum()), findings, invalid)
+        return decided(
+            self.question, self.facts, differences, int(trials.failed.sum()), findings, invalid
+        )
 
     def condition(self, point: Point) -> str:
         """Return what rows of a point are called in the outcome table."""
-        sizes = (f"{self.question.size(units):+.6g}" for units in point)
+        sizes = (f"{self.facts.size(units):+.6g}" for units in point)
         return ",".join(sizes) if any(point) else CORRECT
 
     def study(self, points: Sequence[Point]) -> Study:
@@ -92,18 +94,16 @@ class MapPlan(Analysis[list[Point]]):
         Equal errors are one fault that is shared, as in an audit. Studies have the same name
         whatever spread or number of points is asked for.
         """
-        question, rows = self.question, list[Row]()
+        question, facts, rows = self.question, self.facts, list[Row]()
         for point in points:
             by_size: dict[int, list[str]] = {}
-            for module, units in zip(question.against, point, strict=True):
+            for module, units in zip(facts.modules, point, strict=True):
                 if units:
                     by_size.setdefault(units, []).append(module)
             faults = [
                 fault
                 for units, modules in by_size.items()
-                for fault in at_readers(
-                    _sized(self.system, self.fault, question.size(units)), modules
-                )
+                for fault in at_readers(_sized(self.system, self.fault, facts.size(units)), modules)
             ]
             for name in (question.baseline, question.repair):
                 parts = at_readers(faults, self.system.variants[name].readers)
@@ -111,7 +111,7 @@ class MapPlan(Analysis[list[Point]]):
         return Study(
             name=self.named[0],
             system=self.spec,
-            library=question.library,
+            library=facts.library,
             scenes=self.scenes,
             rows=tuple(rows),
         )
@@ -166,25 +166,21 @@ def plan_map(system: System, spec: SystemSpec, request: MapQuestion, library: Li
         raise UserError(f"--mean lies beyond the map, which ends at {largest:g}: see --up-to.")
     if request.correlation is not None and not -1.0 <= request.correlation <= 1.0:
         raise UserError(f"--correlation {request.correlation:g} does not lie between -1 and 1.")
-    question = resolve(
-        ResolvedMap,
-        request,
-        spec,
-        library,
-        fault=str(request.fault),
-        against=modules,
+    facts = MapFacts(
+        **facts_of(system, spec, library),
+        n_scenes=len(chosen),
+        modules=modules,
         others=others,
         up_to=largest,
         relative=relative,
         unit=sources[0].unit,
         means=middle,
         spreads=spread,
-        n_scenes=len(chosen),
-        trained=system.trained,
     )
+    question = question_of(request, MapQuestion, spec)
     name = f"{spec.name}-map-{request.repair}-vs-{request.baseline}"
     named = (name, str(request.fault), *modules, f"{largest:g}", PurePath(request.library).stem)
-    return MapPlan(request, question, system, named, spec, fault, chosen)
+    return MapPlan(question, system, named, facts, spec, fault, chosen)
 
 
 def _without_size(system: System, fault: FaultText) -> FaultText:

@@ -10,8 +10,8 @@ from faultpath.analyses.model import CORRECT, Invalid
 from faultpath.analyses.scan.errors import Scanned, label
 from faultpath.analyses.scan.model import (
     FirstStage,
-    ResolvedScan,
     ScanError,
+    ScanFacts,
     ScannedPair,
     ScannedVersion,
     SecondStage,
@@ -22,6 +22,7 @@ from faultpath.analyses.scan.sources import Ranking
 from faultpath.core.errors import UserError
 from faultpath.run import Deliveries, Group, Trials, pair
 from faultpath.run.pairing import Mismatch, mismatch_words
+from faultpath.run.question import ScanQuestion
 from faultpath.stats.cancelling import LEVEL, MOST, Pair, StageOne, cancelling, stage_one
 from faultpath.stats.inputs import Floats
 
@@ -31,14 +32,14 @@ has no outcome."""
 
 
 def losses(
-    question: ResolvedScan, errors: Sequence[ScanError], trials: Trials, scenes: Sequence[str]
+    question: ScanQuestion, errors: Sequence[ScanError], trials: Trials, scenes: Sequence[str]
 ) -> list[list[float]]:
     """Return what each error cost in the first stage, percentage points, by variant."""
     return [stage.losses.tolist() for stage in _stages(question, errors, trials, scenes)]
 
 
 def going_on(
-    question: ResolvedScan, errors: Sequence[ScanError], trials: Trials, scenes: Sequence[str]
+    question: ScanQuestion, errors: Sequence[ScanError], trials: Trials, scenes: Sequence[str]
 ) -> tuple[int, ...]:
     """Return the errors that hurt in a variant and go on, the worst first."""
     worst: dict[int, float] = {}
@@ -49,7 +50,7 @@ def going_on(
 
 
 def hurting(
-    question: ResolvedScan, errors: Sequence[ScanError], trials: Trials, scenes: Sequence[str]
+    question: ScanQuestion, errors: Sequence[ScanError], trials: Trials, scenes: Sequence[str]
 ) -> set[tuple[str, int]]:
     """Return the sources and signs of which an error is seen to cost success in some variant."""
     return {
@@ -61,7 +62,7 @@ def hurting(
 
 
 def _stages(
-    question: ResolvedScan, errors: Sequence[ScanError], trials: Trials, scenes: Sequence[str]
+    question: ScanQuestion, errors: Sequence[ScanError], trials: Trials, scenes: Sequence[str]
 ) -> Iterable[StageOne]:
     for variant in question.variants:
         success, _ = successes(trials, variant, [label([error]) for error in errors], scenes)
@@ -95,7 +96,8 @@ def successes(
 
 
 def concluded(
-    question: ResolvedScan,
+    question: ScanQuestion,
+    facts: ScanFacts,
     ranking: Ranking,
     scanned: Scanned,
     trials: Trials,
@@ -115,6 +117,7 @@ def concluded(
         versions = [_without_claims(version) for version in versions]
     return ScanRecord(
         question=question,
+        facts=facts,
         ranking=ranking,
         errors=scanned.errors,
         chosen=scanned.chosen,

@@ -6,9 +6,9 @@ from itertools import combinations
 from pathlib import PurePath
 
 from faultpath.analyses.analysis import Analysis, Round, Rounds
+from faultpath.analyses.facts import facts_of, question_of
 from faultpath.analyses.model import CORRECT
 from faultpath.analyses.planning import rows_of, scenes_of
-from faultpath.analyses.question import resolve
 from faultpath.analyses.scan.decide import concluded, going_on, hurting, losses
 from faultpath.analyses.scan.errors import (
     Scanned,
@@ -20,7 +20,7 @@ from faultpath.analyses.scan.errors import (
     label,
     most_conditions,
 )
-from faultpath.analyses.scan.model import ResolvedScan, ScanError
+from faultpath.analyses.scan.model import ScanError, ScanFacts
 from faultpath.analyses.scan.ranking import PROBED_SCENES, ranking
 from faultpath.analyses.scan.record import ScanRecord
 from faultpath.analyses.scan.sources import Candidate, Ranking, candidates
@@ -50,8 +50,8 @@ class ScanPlan(Analysis[Scanned]):
 
     noun = "conditions"
 
-    request: ScanQuestion
-    question: ResolvedScan
+    question: ScanQuestion
+    facts: ScanFacts
     spec: SystemSpec
     ranking: Ranking
     errors: tuple[ScanError, ...]
@@ -91,7 +91,7 @@ class ScanPlan(Analysis[Scanned]):
     def expected(self) -> int:
         """Return about how many trials there will be."""
         most = self.trials(len(self.others))
-        return most if self.request.scenes is not None else min(TRIALS, most)
+        return most if self.question.scenes is not None else min(TRIALS, most)
 
     def trials(self, second: int) -> int:
         """Return the trials of a scan with so many scenes in its second stage, at most, without
@@ -145,7 +145,7 @@ class ScanPlan(Analysis[Scanned]):
         return scanned._replace(second=self.others[: self._scenes(scanned)])
 
     def _scenes(self, scanned: Scanned) -> int:
-        if self.request.scenes is not None:
+        if self.question.scenes is not None:
             return len(self.others)
         run = self.per_scene * (1 + len(scanned.tried)) * len(self.first)
         least = fewest_scenes(len(scanned.singles), len(scanned.pairs))
@@ -172,7 +172,7 @@ class ScanPlan(Analysis[Scanned]):
         return Study(
             name=self.named[0],
             system=self.spec,
-            library=self.question.library,
+            library=self.facts.library,
             scenes=scenes,
             rows=tuple(rows),
         )
@@ -188,13 +188,17 @@ class ScanPlan(Analysis[Scanned]):
 
     def conclude(self, trials: Trials, deliveries: Deliveries, items: Scanned) -> ScanRecord:
         """Return the result; `UserError` where no trial of some condition is left."""
-        return concluded(self.question, self.ranking, items, trials, deliveries)
+        return concluded(self.question, self.facts, self.ranking, items, trials, deliveries)
 
 
 def plan_scan(
-    system: System, spec: SystemSpec, request: ScanQuestion, library: Library
+    system: System,
+    spec: SystemSpec,
+    request: ScanQuestion,
+    library: Library,
+    known: Ranking | None = None,
 ) -> ScanPlan:
-    """Lay out the first stage, and rank the sources.
+    """Lay out the first stage, and rank the sources where their ranking is not known.
 
     Raises `UserError` for an unknown variant, one that is both, a fault that a scan cannot take,
     where no source has a size, and for fewer scenes than a scan needs.
@@ -205,14 +209,8 @@ def plan_scan(
         raise _nothing_sized(system, every)
     chosen = scenes_of(library, request.scenes)
     others = [name for name in system.variants if name not in request.named_variants]
-    question = resolve(
-        ResolvedScan,
-        request,
-        spec,
-        library,
-        fault=tuple(map(str, request.fault)),
-        n_scenes=request.scenes,
-        trained=system.trained,
+    facts = ScanFacts(
+        **facts_of(system, spec, library),
         other=others[0] if len(others) == 1 else "",
     )
     faults = map(str, request.fault)
@@ -222,8 +220,8 @@ def plan_scan(
         PurePath(library.name).stem,
     )
     plan = ScanPlan(
-        request=request,
-        question=question,
+        question=question_of(request, ScanQuestion, spec),
+        facts=facts,
         system=system,
         named=named,
         spec=spec,
@@ -233,7 +231,7 @@ def plan_scan(
         others=chosen[FIRST_SCENES:],
     )
     _check_scenes(plan)
-    return replace(plan, ranking=ranked_sources(system, request, library))
+    return replace(plan, ranking=known or ranked_sources(system, request, library))
 
 
 def ranked_sources(system: System, request: ScanQuestion, library: Library) -> Ranking:
@@ -262,12 +260,12 @@ def _check_scenes(plan: ScanPlan) -> None:
     needed = FIRST_SCENES + least
     if len(plan.others) < least:
         raise UserError(
-            f"{len(plan.first) + len(plan.others)} scenes of '{plan.question.library}' are too few "
+            f"{len(plan.first) + len(plan.others)} scenes of '{plan.facts.library}' are too few "
             f"for a scan of {len(plan.errors)} errors: {FIRST_SCENES} choose errors and {least} "
             f"others test up to {pairs} pairs, so {needed} would do."
         )
     trials = plan.trials(least)
-    if plan.request.scenes is None and trials > TRIALS:
+    if plan.question.scenes is None and trials > TRIALS:
         raise UserError(
             f"a scan of {len(plan.errors)} errors takes {trials} trials at least, and {TRIALS} are "
             f"run unless you say so: give --scenes {needed} or more."

@@ -1,37 +1,22 @@
-"""The question and the result of a scan, in numbers."""
+"""The facts and the result of a scan, in numbers."""
 
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from faultpath.analyses.facts import Facts
 from faultpath.analyses.model import Invalid
-from faultpath.analyses.question import Resolved
 from faultpath.analyses.scan.sources import Ranking
 from faultpath.core.results import Result
+from faultpath.run.question import ScanQuestion
 from faultpath.stats.estimate import Sign
 
 
-class ResolvedScan(Resolved):
-    """The question of a scan, as its result keeps it."""
+class ScanFacts(Facts):
+    """What a system and its library told of a scan."""
 
-    variant: str
-    repair: str = ""
-    """Another variant that is scanned with the same errors; empty for none."""
-    fault: tuple[str, ...] = ()
-    """Sizes in place of the declared ones."""
-    library: str
-    library_hash: str
-    n_scenes: int | None
-    """Scenes of the library that it may use; `None`: all, as far as the trials of a scan go."""
-    seeds: tuple[int, ...]
-    trained: bool = False
     other: str = ""
     """The only other variant of the system; empty where there are none or several."""
-
-    @property
-    def variants(self) -> tuple[str, ...]:
-        """The variants that are scanned."""
-        return (self.variant, self.repair) if self.repair else (self.variant,)
 
 
 class ScanError(Result, allow_inf_nan=False):
@@ -147,8 +132,9 @@ class ScannedVersion(Result):
 class ScanResult(Result):
     """Result of a scan in numbers; written as `scan.json`."""
 
-    format: Literal[1] = 1
-    question: ResolvedScan
+    format: Literal[2] = 2
+    question: ScanQuestion
+    facts: ScanFacts
     ranking: Ranking
     """All sources that may err, those without a size included."""
     errors: tuple[ScanError, ...]

@@ -49,18 +49,19 @@ def answers(record: AuditResult) -> dict[str, str]:
 
 def _answers(record: AuditResult) -> dict[str, list[str]]:
     question, significant = record.question, any(effect.sign for effect in record.effects)
+    least = record.testing.scenes_needed
     if record.invalid:
         return {"Left open": [_WHY_NO_RESULT[record.invalid]]}
     sure = [*reach(record), *phrases.hardly_acted(record)]
     if record.few:
         few = (
             f"Too few scenes: {counted(record.scenes, 'scene')} compared, and no difference can be "
-            f"significant with fewer than {record.scenes_needed}. The numbers hold for them alone."
+            f"significant with fewer than {least}. The numbers hold for them alone."
         )
         return {"Left open": [few], "How sure": sure}
     if record.earlier:
-        sure.append(phrases.looks(record))
-    elif significant and not question.judged and question.generalise == "scenes":
+        sure.append(phrases.earlier_analyses(record))
+    elif significant and not record.facts.judged and question.generalise == "scenes":
         # Of other tools' trials it is said with how they were paired.
         sure.append(
             "If both versions were equally good, at most 5 % of audits would report any difference."
@@ -111,14 +112,14 @@ def _follows(record: AuditResult) -> Iterator[str]:
     if disagree and not turned:
         yield "Which is better depends on which fault occurs, and how often."
     for result in record.break_even if disagree else ():
-        if result.condition == record.question.primary and result.ahead:
+        if result.condition == record.facts.primary and result.ahead:
             place, words = where(result.condition), shares.ahead(record.question, result)
             yield f"Depending on how often the fault occurs, {place}: {words}."
 
 
 def _unknown(record: AuditResult) -> str:
     """Say that no choice follows, and which differences the primary contrast leaves possible."""
-    main = next((e for e in record.effects if e.condition == record.question.primary), None)
+    main = next((e for e in record.effects if e.condition == record.facts.primary), None)
     text = "Not enough is known to prefer either"
     if main is None or not main.acted or main.low is None or main.high is None:
         return f"{text}."
@@ -130,44 +131,43 @@ def _unknown(record: AuditResult) -> str:
 
 def reach(record: AuditResult) -> Iterator[str]:
     """Say how far the numbers reach, which seeds repeat, and how a sequential audit stopped."""
-    question = record.question
+    question, facts = record.question, record.facts
     holds = "The intervals hold" if record.few else "What is significant holds"
-    conditional = question.trained and question.generalise == "scenes"
+    conditional = facts.trained and question.generalise == "scenes"
     anew = "; models trained anew may differ" if conditional else ""
-    yield f"{holds} for {phrases.estimand(question)}{anew}."
-    if question.judged:
-        yield _PAIRED[question.judged.pairing]
+    yield f"{holds} for {phrases.estimand(question, facts)}{anew}."
+    if facts.pairing in _PAIRED:
+        yield _PAIRED[facts.pairing]
         yield (
             "If both versions were equally good, at most 5 % of such comparisons would report any "
             "difference, provided that the number of scenes was fixed before anybody looked: other "
             "tools do not say whether it was."
         )
-    run = len(question.seeds)
+    run = len(facts.seeds)
     yield from phrases.for_trainings(record)
-    tasks = question.judged is not None and question.judged.unit == "task"
-    if run > 1 and not tasks and record.effects and len(record.effects[0].won) == 1:
+    if run > 1 and facts.unit == "scene" and record.effects and len(record.effects[0].won) == 1:
         yield f"All {run} seeds gave the same outcome in every trial: together they count as one."
     yield from _stopped(record)
 
 
 def _stopped(record: AuditResult) -> Iterator[str]:
     """Say when a sequential audit stopped, why, and what that means for its numbers."""
-    stopped, rule, most = record.stopped, record.question.stop, record.question.n_scenes
-    if stopped is None or rule is None:
+    stopped, question, facts = record.stopped, record.question, record.facts
+    if stopped is None or facts.order is None:
         return
-    whole = stopped.scenes == most
+    whole = stopped.scenes == facts.n_scenes
     because = "but" if not stopped.reached else "and" if whole else "because"
     why = f"the primary contrast was {'' if stopped.reached else 'not '}significant"
-    if rule.when == "all-decided":
-        also = f" or smaller than {margin(record)}" if rule.margin_pp else ""
+    if question.stop_when == "all-decided":
+        also = f" or smaller than {margin(record)}" if question.margin_pp else ""
         why = f"{'every' if stopped.reached else 'not every'} effect was significant{also}"
-    elif record.question.primary in stopped.small:
+    elif record.facts.primary in stopped.small:
         why = f"the primary contrast was shown to be smaller than {margin(record)}"
     took = f"it {'stopped after' if stopped.reached else 'took'} {counted(stopped.scenes, 'scene')}"
-    took += f" of at most {most}"
+    took += f" of at most {facts.n_scenes}"
     if whole:
         took = f"it took all that it was allowed, {counted(stopped.scenes, 'scene')}"
-    trials = counted(stopped.scenes * rule.trials, "trial")
+    trials = counted(stopped.scenes * facts.order.trials, "trial")
     yield f"This audit was sequential: {took} ({trials}), {because} {why}."
     yield (
         "Its scenes came in a random order fixed beforehand. Intervals and p-values hold wherever "
@@ -186,7 +186,7 @@ def _left_open(record: AuditResult) -> Iterator[str]:
     if same := [e.isolated for e in record.changes if e.turn == "none" and not e.unsettled]:
         at = " or the ".join(same)
         yield f"No change from the fault at the {at} alone to the shared fault is significant."
-    if record.question.judged:
+    if record.facts.judged:
         yield "Other scenes and other conditions are not among the results."
     else:
         yield (
@@ -223,7 +223,7 @@ def would_change(record: AuditResult) -> Iterator[str]:
         yield "Trials that repeat and are pairs: see the remarks on what differed."
         return
     stopped, tested = record.stopped, [effect for effect in record.effects if effect.acted]
-    judged = record.question.judged is not None
+    judged = record.facts.judged
     if stopped and not all(effect.sign for effect in record.effects):
         yield (
             "More scenes: --stop-when all-decided goes on until every effect is significant or "
@@ -233,7 +233,8 @@ def would_change(record: AuditResult) -> Iterator[str]:
             "said then holds as well."
         )
     if record.few:
-        yield f"More scenes: {record.scenes_needed} at least, and more for all but a clear winner."
+        least = record.testing.scenes_needed
+        yield f"More scenes: {least} at least, and more for all but a clear winner."
     if len(tested) < len(record.effects):
         yield "A fault that acts: an onset before the trial ends, a size that changes what is read."
     if any(effect.extreme == "floor" for effect in tested):

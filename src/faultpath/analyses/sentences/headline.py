@@ -23,7 +23,7 @@ def headline(record: AuditResult) -> str:
     many scenes they show where these are few."""
     if record.invalid:
         return NO_RESULT[record.invalid]
-    primary = record.question.primary
+    primary = record.facts.primary
     main = next((effect for effect in record.effects if effect.condition == primary), None)
     tested = [effect for effect in record.effects if effect.acted]
     if main is None:
@@ -31,7 +31,7 @@ def headline(record: AuditResult) -> str:
     if record.few:
         return (
             f"Too few scenes: {record.scenes} compared, and no difference can be significant with "
-            f"fewer than {record.scenes_needed}."
+            f"fewer than {record.testing.scenes_needed}."
         )
     if not main.acted and all(effect.condition == CORRECT for effect in tested):
         return "The fault never changed a reading: no effect of it was tested."

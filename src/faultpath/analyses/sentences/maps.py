@@ -3,21 +3,21 @@
 from collections.abc import Iterator, Sequence
 
 from faultpath.analyses.map.lattice import SHARED
-from faultpath.analyses.map.model import Flip, MapPoint, MapResult, ResolvedMap
+from faultpath.analyses.map.model import Flip, MapFacts, MapPoint, MapResult
 from faultpath.analyses.sentences.phrases import NO_RESULT
 from faultpath.analyses.sentences.wording import MINUS, plain, series, signed
 from faultpath.stats.contrast import MIN_SCENES
 
 
-def estimand(question: ResolvedMap) -> str:
+def estimand(facts: MapFacts) -> str:
     """Return what everything speaks of."""
-    return "new scenes like these" + (", for these trained models" if question.trained else "")
+    return "new scenes like these" + (", for these trained models" if facts.trained else "")
 
 
 def headline(record: MapResult) -> str:
     """Return at how many of the pairs of errors that were run who is ahead, or which of these show
     that sharing the error reverses the ranking."""
-    question, run = record.question, len(record.points)
+    run = len(record.points)
     if record.invalid:
         return NO_RESULT[record.invalid]
     if record.scenes < MIN_SCENES:
@@ -25,14 +25,14 @@ def headline(record: MapResult) -> str:
     if turned := _turned(record):
         module, sign, values = turned[0]
         return (
-            f"Sharing the error reverses the ranking at {_sizes(question, values)}: "
-            f"{question.winner(sign)} is ahead with the {module} alone wrong, "
-            f"{question.winner(-sign)} with both."
+            f"Sharing the error reverses the ranking at {_sizes(record.facts, values)}: "
+            f"{record.winner(sign)} is ahead with the {module} alone wrong, "
+            f"{record.winner(-sign)} with both."
         )
     ahead = {sign: sum(point.sign == sign for point in record.points) for sign in (1, -1)}
     if not any(ahead.values()):
         return f"At none of {run} pairs of errors is the difference significant."
-    clauses = [f"{question.winner(sign)} at {count}" for sign, count in ahead.items() if count]
+    clauses = [f"{record.winner(sign)} at {count}" for sign, count in ahead.items() if count]
     first, *others = clauses
     text = f"{first.replace(' at ', ' is ahead at ', 1)} of {run} pairs of errors"
     return f"{', '.join([text, *others])}; elsewhere neither is significantly ahead."
@@ -40,19 +40,19 @@ def headline(record: MapResult) -> str:
 
 def sentences(record: MapResult) -> tuple[str, ...]:
     """Return what is significant and what it rests on, sentence by sentence."""
-    question, run = record.question, len(record.points)
+    run = len(record.points)
     if record.invalid:
         return ()
     if record.scenes < MIN_SCENES:
         return (_distribution(record),)
     ahead = {sign: sum(point.sign == sign for point in record.points) for sign in (-1, 1)}
     return (
-        f"What is significant holds for {estimand(question)}, at the pairs of errors that were "
+        f"What is significant holds for {estimand(record.facts)}, at the pairs of errors that were "
         "run.",
-        f"Of {run} pairs of errors run, {question.baseline} is significantly ahead at {ahead[-1]} "
-        f"and {question.repair} at {ahead[1]}; at {run - ahead[-1] - ahead[1]} neither.",
+        f"Of {run} pairs of errors run, {record.winner(-1)} is significantly ahead at {ahead[-1]} "
+        f"and {record.winner(1)} at {ahead[1]}; at {run - ahead[-1] - ahead[1]} neither.",
         *_reversals(record),
-        *(_flipped(question, flip) for flip in record.flips),
+        *(_flipped(record, flip) for flip in record.flips),
         _distribution(record),
         _expected(record),
     )
@@ -62,7 +62,7 @@ def _expected(record: MapResult) -> str:
     """Say what the interpolated map averages to, from which nothing is concluded."""
     correlated = {0.0: "with independent errors", 1.0: "with fully correlated ones"}
     texts: list[str] = []
-    for expectation in record.joint.asked:
+    for expectation in record.joint.requested:
         other = f"with a correlation of {expectation.correlation:g}".replace("-", MINUS)
         ends = f"[{plain(expectation.low)}, {plain(expectation.high)}]"
         where = correlated.get(expectation.correlation, other)
@@ -74,13 +74,11 @@ def _expected(record: MapResult) -> str:
 
 
 def _distribution(record: MapResult) -> str:
-    question = record.question
+    facts = record.facts
     text = "Errors are taken to be Gaussian"
-    for module, mean, spread in zip(
-        question.against, question.means, question.spreads, strict=True
-    ):
-        middle = f"mean {question.said(mean)}, " if mean else ""
-        size = question.said(spread).removeprefix("+")
+    for module, mean, spread in zip(facts.modules, facts.means, facts.spreads, strict=True):
+        middle = f"mean {facts.size_label(mean)}, " if mean else ""
+        size = facts.size_label(spread).removeprefix("+")
         text += f", at the {module} with {middle}standard deviation {size}"
     text += "."
     if record.joint.outside >= 0.005:
@@ -88,7 +86,7 @@ def _distribution(record: MapResult) -> str:
             f" Up to {100 * record.joint.outside:.0f} % of them lie beyond the map and count as at "
             "its edge."
         )
-    return text + (f" Without error: {', '.join(question.others)}." if question.others else "")
+    return text + (f" Without error: {', '.join(facts.others)}." if facts.others else "")
 
 
 def _turned(record: MapResult) -> list[tuple[str, int, list[float]]]:
@@ -96,7 +94,7 @@ def _turned(record: MapResult) -> list[tuple[str, int, list[float]]]:
     error reverses that."""
     of = {point.errors: point.sign for point in record.points}
     turned: list[tuple[str, int, list[float]]] = []
-    for place, module in enumerate(record.question.against):
+    for place, module in enumerate(record.facts.modules):
         alone = {sum(e): sign for e, sign in of.items() if not e[1 - place] and e[place]}
         for sign in (-1, 1):
             sizes = sorted(s for s in alone if alone[s] == sign and of.get((s, s)) == -sign)
@@ -105,21 +103,21 @@ def _turned(record: MapResult) -> list[tuple[str, int, list[float]]]:
     return turned
 
 
-def _sizes(question: ResolvedMap, values: Sequence[float]) -> str:
-    return series([question.said(size) for size in values])
+def _sizes(facts: MapFacts, values: Sequence[float]) -> str:
+    return series([facts.size_label(size) for size in values])
 
 
 def _reversals(record: MapResult) -> Iterator[str]:
-    question = record.question
     for module, sign, values in _turned(record):
         yield (
-            f"Sharing the error reverses the ranking at {_sizes(question, values)}: with the "
-            f"{module} alone wrong {question.winner(sign)} is ahead, with both wrong alike "
-            f"{question.winner(-sign)}."
+            f"Sharing the error reverses the ranking at {_sizes(record.facts, values)}: with the "
+            f"{module} alone wrong {record.winner(sign)} is ahead, with both wrong alike "
+            f"{record.winner(-sign)}."
         )
 
 
-def _flipped(question: ResolvedMap, flip: Flip) -> str:
+def _flipped(record: MapResult, flip: Flip) -> str:
+    facts = record.facts
     where = (
         "With both wrong alike"
         if flip.condition == SHARED
@@ -129,27 +127,29 @@ def _flipped(question: ResolvedMap, flip: Flip) -> str:
     clauses: list[str] = []
     if flip.start and flip.until is not None:
         reach = "at every size run"
-        if abs(flip.until) < question.up_to:
-            reach = f"at the sizes run up to {question.said(flip.until)}" if flip.until else "at 0"
-        clauses.append(f"{question.winner(flip.start)} is ahead {reach}")
+        if abs(flip.until) < facts.up_to:
+            reach = (
+                f"at the sizes run up to {facts.size_label(flip.until)}" if flip.until else "at 0"
+            )
+        clauses.append(f"{record.winner(flip.start)} is ahead {reach}")
     if flip.first is not None and flip.last is not None:
-        first = question.said(flip.first)
+        first = facts.size_label(flip.first)
         reach = f"at the sizes run from {first} on"
-        if abs(flip.last) < question.up_to:
-            reach = f"at the sizes run from {first} to {question.said(flip.last)}"
+        if abs(flip.last) < facts.up_to:
+            reach = f"at the sizes run from {first} to {facts.size_label(flip.last)}"
             reach = f"at {first}" if flip.first == flip.last else reach
-        clauses.append(f"{question.winner(flip.turned)} is ahead {reach}")
-    elif not flip.start or abs(flip.until or 0.0) < question.up_to:
+        clauses.append(f"{record.winner(flip.turned)} is ahead {reach}")
+    elif not flip.start or abs(flip.until or 0.0) < facts.up_to:
         clauses.append(
             "no size changes that significantly" if clauses else "nothing is significant"
         )
     return f"{where}: {', '.join(clauses)}."
 
 
-def at_point(question: ResolvedMap, point: MapPoint) -> str:
+def at_point(record: MapResult, point: MapPoint) -> str:
     """Return a pair of errors and what was seen there, for the tip of a picture."""
-    sizes = zip(question.against, map(question.said, point.errors), strict=True)
+    sizes = zip(record.facts.modules, map(record.facts.size_label, point.errors), strict=True)
     pair = ", ".join(f"{module} {size}" for module, size in sizes)
-    decided = f"{question.winner(point.sign)} ahead" if point.sign else "not significant"
+    decided = f"{record.winner(point.sign)} ahead" if point.sign else "not significant"
     interval = f"[{plain(point.low)}, {plain(point.high)}]"
     return f"{pair}: {signed(point.difference)} pp {interval}, {decided}"

@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Sequence
 
 from faultpath.analyses.effects import Change, Effect
+from faultpath.analyses.facts import ComparisonFacts, Question
 from faultpath.analyses.model import CORRECT, SHARED, AuditResult, Invalid
-from faultpath.analyses.question import Question
 from faultpath.analyses.sentences.wording import (
     capital,
     counted,
@@ -24,32 +24,61 @@ NO_RESULT: dict[Invalid, str] = {
 """Headlines of results in which nothing can be significant."""
 
 
-def estimand(question: Question) -> str:
+def estimand(question: Question, facts: ComparisonFacts) -> str:
     """Return what intervals and tests speak of."""
     if question.generalise == "models":
         return "new scenes like these and models newly trained with other seeds"
-    if question.judged and question.judged.unit == "task":
+    if facts.unit == "task":
         return "new tasks like these"
-    return "new scenes like these" + (", for these trained models" if question.trained else "")
+    return "new scenes like these" + (", for these trained models" if facts.trained else "")
+
+
+_TESTS = {
+    "E+M (Lloyd)": "if both versions were equally good, the largest chance of a split as uneven as "
+    "this one of the scenes that one version alone wins, however many these are",
+    "E+M and score of scenes": "the larger p-value of two, of a score test on the mean over scenes "
+    "and of E+M (Lloyd) with as many scenes as tell as much",
+    "exact McNemar": "if both versions were equally good, the chance of a split as uneven as this "
+    "one of the scenes that one version alone wins",
+    "sign test": "whether each version is ahead in as many scenes as the other",
+    "t test": "whether the mean effect of trainings is 0, if they spread as a Gaussian does",
+    "bets on the mean": "bets against a mean of 0, which hold at whatever scene one stops",
+}
+"""What a test computes, by the beginning of its name."""
+
+
+def tests(record: AuditResult) -> str:
+    """Return which tests gave which p-values, with a sentence on each; empty where none did."""
+    titles = {condition.name: condition.title for condition in record.conditions}
+    by_name: dict[str, list[str]] = {}
+    for effect in record.effects:
+        title = titles.get(effect.condition, effect.condition)
+        by_name.setdefault(effect.test, []).append(f"{title} {p_value(effect.p_value)}")
+    said: list[str] = []
+    for name, values in by_name.items():
+        means = next((words for test, words in _TESTS.items() if name.startswith(test)), "")
+        what = f"{capital(name)}: {means}. " if means else f"{capital(name)}. "
+        said.append(f"{what}p, before correction: {', '.join(values)}.")
+    return " ".join(said)
 
 
 def margin(record: AuditResult) -> str:
     """Return the margin below which a sequential audit counts a difference as small."""
-    return f"{(record.question.stop and record.question.stop.margin_pp) or 0.0:g} pp"
+    return f"{record.question.margin_pp or 0.0:g} pp"
 
 
-def adjusted(record: AuditResult, of: Effect | Change) -> str:
+def adjusted(record: AuditResult, difference: Effect | Change) -> str:
     """Return `p = 0.250 after Holm`; nothing where nothing was tested."""
-    if of.corrected_p is None:
+    if difference.corrected_p is None:
         return ""
-    p = p_value(of.corrected_p)
-    return f"p {p if p.startswith('<') else f'= {p}'} {record.question.family}"
+    p = p_value(difference.corrected_p)
+    return f"p {p if p.startswith('<') else f'= {p}'} {record.facts.family}"
 
 
-def only_alone(of: Effect | Change) -> bool:
+def only_alone(difference: Effect | Change) -> bool:
     """Return whether the interval excludes 0 and yet the difference is not significant."""
-    low, high = of.interval or (0.0, 0.0)
-    tested = of.corrected_p is not None and not (of.sign or of.unsettled)
+    low, high = difference.interval or (0.0, 0.0)
+    tested = difference.corrected_p is not None and not (difference.sign or difference.unsettled)
     return tested and (low > 0 or high < 0)
 
 
@@ -115,7 +144,7 @@ def _ran(record: AuditResult, effect: Effect) -> str:
     needed = series([f"{count} of {name}" for count, name in of if count])
     how = (
         "add their outcomes to the results"
-        if question.judged
+        if record.facts.judged
         else "the same command tries them again"
     )
     return (
@@ -154,21 +183,21 @@ def in_short(record: AuditResult, effect: Effect | None) -> str:
     return f"no significant difference{p}"
 
 
-def change(record: AuditResult, of: Change) -> str:
+def change(record: AuditResult, change: Change) -> str:
     """Say whether sharing the fault reverses the ranking, changes the difference, or neither."""
     effects = {effect.condition: effect for effect in record.effects}
     if record.invalid:
         return (
-            f"Nothing follows of the change from the effect {where(of.isolated)} to that "
+            f"Nothing follows of the change from the effect {where(change.isolated)} to that "
             f"{where(SHARED)}."
         )
-    ends = effects[of.isolated], effects[SHARED]
+    ends = effects[change.isolated], effects[SHARED]
     values = " to ".join(f"{signed(end.value)} pp" for end in ends)
-    numbers = f"{values}; change {signed(of.value)} pp {interval(of)}".rstrip()
-    numbers += f", {adjusted(record, of)}"
-    numbers += ": not significant, although the interval excludes 0" if only_alone(of) else ""
-    alone, shared = where(of.isolated), where(SHARED)
-    if of.turn == "reversal":
+    numbers = f"{values}; change {signed(change.value)} pp {interval(change)}".rstrip()
+    numbers += f", {adjusted(record, change)}"
+    numbers += ": not significant, although the interval excludes 0" if only_alone(change) else ""
+    alone, shared = where(change.isolated), where(SHARED)
+    if change.turn == "reversal":
         one, other = (record.winner(end.sign) for end in ends)
         aside = " One of the two lies at the floor or ceiling: this carries no headline."
         return (
@@ -176,13 +205,13 @@ def change(record: AuditResult, of: Change) -> str:
             f"{shared}, {other} does ({numbers})."
             f"{aside if any(end.extreme for end in ends) else ''}"
         )
-    if of.turn == "interaction":
+    if change.turn == "interaction":
         return (
             f"Significant interaction: the difference is not the same {alone} as {shared} "
             f"({numbers}); a reversal is not shown."
         )
     between = f"between the effect {alone} and that {shared} ({numbers})"
-    if of.unsettled:
+    if change.unsettled:
         return f"No change is significant {between}: trials that failed could undo it."
     return f"No change is significant {between}."
 
@@ -194,10 +223,11 @@ def no_pair(condition: str) -> str:
 
 def not_standing(record: AuditResult) -> Iterator[str]:
     """Say of each interval that excludes 0 without a significant difference why it is not one."""
+    contrasts = f"{record.testing.hypotheses} contrasts"
     for effect in () if record.invalid else filter(only_alone, record.effects):
         yield (
             f"{capital(where(effect.condition))}, the interval excludes 0, but "
-            f"{adjusted(record, effect)} ({record.hypotheses} contrasts): the difference is not "
+            f"{adjusted(record, effect)} ({contrasts}): the difference is not "
             "significant."
         )
 
@@ -221,9 +251,9 @@ def hardly_acted(record: AuditResult) -> Iterator[str]:
 def partly_measured(record: AuditResult) -> Iterator[str]:
     """Say of which metrics not every trial has a value."""
     for effect, secondary in zip(record.effects, record.secondary, strict=True):
-        for name in record.question.metrics:
+        for name in record.facts.metrics:
             whole = secondary.metrics[name].n_scenes if name in secondary.metrics else 0
-            if whole < effect.scenes and (whole or record.question.judged):
+            if whole < effect.scenes and (whole or record.facts.judged):
                 scenes = f"{whole} of {counted(effect.scenes, 'scene')}"
                 yield (
                     f"{capital(where(effect.condition))}, {name} is compared in {scenes}: only "
@@ -240,7 +270,7 @@ def failed_trials(record: AuditResult) -> Iterator[str]:
             continue
         if not (missing.repair or missing.baseline or missing.unsettled):
             continue
-        lost = "failed or missing" if question.judged else "failed"
+        lost = "failed or missing" if record.facts.judged else "failed"
         yield (
             f"{capital(where(effect.condition))}, {counted(missing.repair, 'trial')} of "
             f"{question.repair} {lost}, {missing.baseline} of {question.baseline}: depending on "
@@ -249,13 +279,14 @@ def failed_trials(record: AuditResult) -> Iterator[str]:
         )
 
 
-def looks(record: AuditResult) -> str:
+def earlier_analyses(record: AuditResult) -> str:
     """Say what was concluded before, and what that does to what is significant now."""
-    counts = sorted({look.scenes for look in record.earlier if look.scenes is not None})
+    earlier = record.earlier
+    counts = sorted({analysis.scenes for analysis in earlier if analysis.scenes is not None})
     with_scenes = f" with {series([str(n) for n in counts])} scenes" if counts else ""
-    led = series([f"'{name}'" for name in dict.fromkeys(look.primary for look in record.earlier)])
+    primaries = series(list(dict.fromkeys(f"'{analysis.primary}'" for analysis in earlier)))
     return (
-        f"This audit was concluded before{with_scenes}, led by {led}: after such a look, more "
-        "than 5 % of audits would report a difference between equally good versions. Run it in "
-        "scenes that no audit has looked at, or with --stop-when, which allows for looks."
+        f"This audit was concluded before{with_scenes}, led by {primaries}: after such a look, "
+        "more than 5 % of audits would report a difference between equally good versions. Run it "
+        "in scenes that no audit has looked at, or with --stop-when, which allows for looks."
     )

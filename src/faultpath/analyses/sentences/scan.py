@@ -207,7 +207,7 @@ def _failed(record: ScanResult) -> Iterator[str]:
 
 
 def _limits(record: ScanResult) -> str:
-    models = ", for these trained models" if record.question.trained else ""
+    models = ", for these trained models" if record.facts.trained else ""
     apart = " Versions are tested separately." if len(record.versions) > 1 else ""
     return (
         f"What is listed holds for new scenes like these{models}, at these sizes. Nothing is "
@@ -217,13 +217,13 @@ def _limits(record: ScanResult) -> str:
 
 def commands(record: ScanResult) -> tuple[str, ...]:
     """Return a command for each listed pair that audits a repair under these errors."""
-    question = record.question
-    if question.system.endswith(" object"):
+    question, facts = record.question, record.facts
+    if facts.system.endswith(" object"):
         return ()
     listed = {pair.errors for version in record.versions for pair in version.listed}
-    repair = question.repair or question.other or ANY_REPAIR
+    repair = question.repair or facts.other or ANY_REPAIR
     options = [f"--set={key}={value}" for key, value in question.options.items()]
-    words = ["faultpath", "audit", question.system, *options]
+    words = ["faultpath", "audit", facts.system, *options]
     words += ["--baseline", question.variant, "--repair", repair, "--fault"]
     return tuple(shlex.join([*words, _fault(record, places)]) for places in sorted(listed))
 

@@ -1,7 +1,7 @@
 """At which shares, of faulty episodes or of common causes, a version is ahead, in words."""
 
+from faultpath.analyses.facts import Question
 from faultpath.analyses.model import ConditionBreakEven
-from faultpath.analyses.question import Question
 
 FREQUENCY = {
     "everywhere": "at every frequency",

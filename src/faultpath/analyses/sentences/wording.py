@@ -5,8 +5,8 @@ import re
 from collections.abc import Sequence
 
 from faultpath.analyses.effects import Difference, Effect
+from faultpath.analyses.facts import ComparisonFacts
 from faultpath.analyses.model import AS_RUN, CORRECT, SHARED
-from faultpath.analyses.question import Question
 from faultpath.stats.estimate import BreakEven, Estimate
 
 MINUS = "−"
@@ -106,14 +106,14 @@ def reservation(effect: Effect) -> str:
     )
 
 
-def ended(question: Question, status: str) -> str:
+def ended(facts: ComparisonFacts, status: str) -> str:
     """Return what the system calls the way in which a trial ended."""
-    return question.ends.get(status, status)
+    return facts.ends.get(status, status)
 
 
-def faults(question: Question) -> str:
+def faults(facts: ComparisonFacts) -> str:
     """Return what the fault does to each channel, whoever gets it; empty in records without it."""
-    words = (fault.aimed_at("*").describe() for fault in question.faults)
+    words = (fault.aimed_at("*").describe() for fault in facts.faults)
     # `describe` says at whom a fault aims, and an audit aims it at each in turn.
     return "; ".join(re.sub(" at every [a-z]+", "", text) for text in words)
 

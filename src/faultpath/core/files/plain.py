@@ -15,6 +15,7 @@ from pydantic import BaseModel, ValidationError
 from yaml.events import AliasEvent, CollectionEndEvent, CollectionStartEvent, NodeEvent
 from yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
+from faultpath.core.errors import UserError
 from faultpath.core.numbers import number_in, whole_in
 from faultpath.core.validation_messages import misfit_of
 
@@ -88,6 +89,8 @@ def model_of(data: bytes, model: type[_Model]) -> _Model:
         return model.model_validate_json(data)
     except ValidationError as error:
         raise Misread(str(misfit_of(error))) from None
+    except UserError as error:  # of a text in it, such as a fault's
+        raise Misread(str(error)) from None
 
 
 @dataclass(frozen=True)
@@ -127,7 +130,9 @@ def read_yaml(data: bytes) -> Document:
     text = text_of(data)
     try:
         _check_events(cast(Any, yaml).parse(text, Loader=_Loader))
-        root: Node | None = cast(Any, yaml).compose(text, Loader=_Loader)
+        loader = _Loader(text)
+        root: Node | None = loader.get_single_node()
+        return Document(None if root is None else loader.construct_document(root), root)
     except yaml.MarkedYAMLError as error:
         problem = " ".join(" ".join(filter(None, (error.context, error.problem))).split())
         line = None if error.problem_mark is None else error.problem_mark.line + 1
@@ -137,22 +142,36 @@ def read_yaml(data: bytes) -> Document:
     except yaml.YAMLError as error:
         problem = " ".join(str(error).split())
         raise Misread(f"is not plain YAML ({problem}); correct it") from None
-    return Document(None if root is None else _value(root), root)
-
-
-def yaml_text(data: Any, **style: Any) -> str:
-    """Return YAML that `read_yaml` reads as the same, and other readers too."""
-    return cast(Any, yaml).dump(data, Dumper=_Dumper, sort_keys=False, allow_unicode=True, **style)
 
 
 class _Loader(_Safe):
-    """Knows text, numbers, truth values and nothing else."""
+    """Knows text, numbers, truth values and nothing else; each key is text, and there once."""
 
     yaml_implicit_resolvers: ClassVar[dict[str, Any]] = {}
 
+    def construct_mapping(self, node: MappingNode, deep: bool = False) -> dict[str, Any]:
+        """Return a mapping; `Misread` for a key that is no text or appears twice."""
+        seen: set[str] = set()
+        for key, _ in cast(list[tuple[Node, Node]], node.value):
+            line = key.start_mark.line + 1
+            if not isinstance(key, ScalarNode):
+                raise Misread("a key is no text; write a word before the colon", line)
+            if key.value in seen:
+                raise Misread(f"key '{key.value}' appears twice; drop one", line)
+            seen.add(key.value)
+            key.tag = _TYPE + "str"
+        return _Safe.construct_mapping(self, node, deep)
 
-class _Dumper(yaml.SafeDumper):
-    """Quotes what either reader would take for something else than text."""
+    def number(self, node: ScalarNode) -> float:
+        """Return a number; `Misread` for one out of range."""
+        try:
+            return (_whole if node.tag == _TYPE + "int" else _fraction)(node.value)
+        except Misread as error:
+            raise Misread(str(error), node.start_mark.line + 1) from None
+
+
+for _kind in ("int", "float"):
+    _Loader.add_constructor(_TYPE + _kind, _Loader.number)
 
 
 _INTEGER = re.compile(r"[-+]?(?:0|[1-9][0-9]*)$")
@@ -164,14 +183,13 @@ _TRUTH = re.compile(
     r"(?:yes|Yes|YES|no|No|NO|true|True|TRUE|false|False|FALSE|on|On|ON|off|Off|OFF)$"
 )
 _NOTHING = re.compile(r"(?:~|null|Null|NULL|)$")
-for _class in (_Loader, _Dumper):
-    for _name, _pattern, _first in (
-        ("null", _NOTHING, ["~", "n", "N", ""]),
-        ("bool", _TRUTH, list("yYnNtTfFoO")),
-        ("int", _INTEGER, list("-+0123456789")),
-        ("float", _NUMBER, list("-+.0123456789")),
-    ):
-        cast(Any, _class).add_implicit_resolver(_TYPE + _name, _pattern, _first)
+for _name, _pattern, _first in (
+    ("null", _NOTHING, ["~", "n", "N", ""]),
+    ("bool", _TRUTH, list("yYnNtTfFoO")),
+    ("int", _INTEGER, list("-+0123456789")),
+    ("float", _NUMBER, list("-+.0123456789")),
+):
+    _Loader.add_implicit_resolver(_TYPE + _name, _pattern, _first)
 
 
 def _check_events(events: Iterator[Any]) -> None:
@@ -186,36 +204,6 @@ def _check_events(events: Iterator[Any]) -> None:
             raise Misread("aliases are not read; write it out", line)
         if isinstance(event, NodeEvent) and (tag := getattr(event, "tag", None)) is not None:
             raise Misread(f"tags are not read; drop '{tag.replace(_TYPE, '!!')}'", line)
-
-
-def _value(node: Node) -> Any:
-    if isinstance(node, MappingNode):
-        entries: dict[str, Any] = {}
-        for key, value in cast(list[tuple[Node, Node]], node.value):
-            line = key.start_mark.line + 1
-            if not isinstance(key, ScalarNode):
-                raise Misread("a key is no text; write a word before the colon", line)
-            if key.value in entries:
-                raise Misread(f"key '{key.value}' appears twice; drop one", line)
-            entries[cast(str, key.value)] = _value(value)
-        return entries
-    if isinstance(node, SequenceNode):
-        return [_value(item) for item in cast(list[Node], node.value)]
-    text = cast(str, node.value)
-    try:
-        match node.tag.removeprefix(_TYPE):
-            case "null":
-                return None
-            case "bool":
-                return text.lower() in ("yes", "true", "on")
-            case "int":
-                return _whole(text)
-            case "float":
-                return _fraction(text)
-            case _:
-                return text
-    except Misread as error:
-        raise Misread(str(error), node.start_mark.line + 1) from None
 
 
 def _whole(text: str) -> int:

@@ -1,28 +1,3 @@
-"use strict";
-// What is folded is printed.
-addEventListener("beforeprint", () => document.querySelectorAll("details.more").forEach((d) => (d.open = true)));
-
-// The lines of "why" are drawn anew, in the time that they took.
-for (const button of document.querySelectorAll("#why-play")) {
-  const strips = [...document.querySelectorAll(".adding .until")], whole = strips.map((strip) => Number(strip.getAttribute("width")));
-  let frame = 0;
-  const show = (share) => strips.forEach((strip, n) => strip.setAttribute("width", whole[n] * share));
-  const stop = () => { cancelAnimationFrame(frame); frame = 0; show(1); button.textContent = "Play"; };
-  button.hidden = false;
-  button.addEventListener("click", () => {
-    if (frame) return stop();
-    const began = performance.now();
-    const draw = (now) => {
-      const share = Math.max(0, now - began) / 1000 / Number(button.dataset.seconds);
-      if (share >= 1) return stop();
-      show(share);
-      frame = requestAnimationFrame(draw);
-    };
-    button.textContent = "Stop";
-    frame = requestAnimationFrame(draw);
-  });
-}
-
 // Every trial again: a scene on one clock, a column a condition; scene, condition and time are in the address.
 if (document.getElementById("viewer-data")) {
   const VERSIONS = ["baseline", "repair"], SIGNS = { success: "✓", crash: "✕" };
@@ -130,6 +105,7 @@ if (document.getElementById("viewer-data")) {
         draw(svg, "rect", { x: x(from), y: 8, width: Math.max(1, x(to) - x(from)), height: under - 8, class: "v-window" });
       }
       const digits = Math.min(6, Math.max(0, Math.ceil(1.3 - Math.log10(high - low))));
+      for (const [step] of pair.parting?.marks ?? []) draw(svg, "line", { x1: x(step), x2: x(step), y1: 8, y2: under, class: "v-parting" });
       for (const v of state.range) {
         level(v, "v-line");
         draw(svg, "text", { x: left - 5, y: Math.min(under - 1, Math.max(16, y(v) + 4)), "text-anchor": "end", class: "v-text" }, v.toFixed(digits).replace("-", "−"));
@@ -152,16 +128,17 @@ if (document.getElementById("viewer-data")) {
       draw(svg, "line", { x1: x(state.step), x2: x(state.step), y1: 8, y2: under, class: "v-now" });
     };
 
+    const nameOf = (place) => {
+      const { scene, title, seed } = data.scenes[place], name = title.includes(scene) ? title : scene + (title && `, ${title}`);
+      return several ? `${name}, seed ${seed}` : name;
+    };
     const group = (label, places) => {
       const made = make("optgroup", "", { label });
-      for (const place of places) {
-        const { scene, title, seed } = data.scenes[place], name = title.includes(scene) ? title : scene + (title && `, ${title}`);
-        made.append(make("option", several ? `${name}, seed ${seed}` : name, { value: place }));
-      }
+      for (const place of places) made.append(make("option", nameOf(place), { value: place }));
       return made;
     };
     // The list has all scenes, or those in which one variant alone succeeds on one condition.
-    const every = [...data.scenes.keys()];
+    const every = [...data.scenes.keys()], most = 30;
     const apart = data.conditions.flatMap(({ name, title }) => ["repair", "baseline"].map((variant) => {
       const places = every.filter((place) => data.scenes[place].pairs.some((p) => p.condition === name && p.kind === `${variant}-only`));
       return { label: `${title}: only the ${variant} succeeds`, places };
@@ -171,22 +148,48 @@ if (document.getElementById("viewer-data")) {
     const labels = [all, ...apart].map(({ label, places }) => `${label} (${places.length}${part ? " recorded" : ""})`);
     if (part) labels[0] = `${every.length} of ${data.ran} ${noun} recorded`;
     get("show").replaceChildren(...labels.map((label, n) => make("option", label, { value: n })));
-    const offer = (n) => {
-      const { places } = [all, ...apart][n];
+    // A menu of hundreds is no menu: it has the first scenes whose names have every word that is looked for.
+    const offer = (n, find = get("find").value) => {
+      get("find").value = find;
+      const words = find.toLowerCase().split(/\s+/).filter(Boolean), { places } = [all, ...apart][n];
+      const match = places.filter((place) => words.every((word) => nameOf(place).toLowerCase().includes(word)));
+      const listed = match.slice(0, most), more = match.length - listed.length, first = n === 0 && !words.length ? data.picked : [];
+      if (match.length && !match.includes(state.scene)) state.scene = match[0];
+      if (![...first, ...listed].includes(state.scene)) listed.push(state.scene);
+      const rest = match.length ? more && `${more} more: type to find one` : "no scene has these words";
       get("show").value = String(n);
-      get("scene").replaceChildren(...(n === 0 && data.picked.length ? [group("Shown first", data.picked)] : []), group("All", places));
-      if (!places.includes(state.scene)) state.scene = places[0];
+      get("scene").replaceChildren(...(first.length ? [group("Shown first", first)] : []), group(match.length ? "All" : "Shown", listed), ...(rest ? [make("option", rest, { disabled: "" })] : []));
+      get("scene").value = String(state.scene);
     };
+    get("found").hidden = every.length <= most;
     offer(0);
     const columns = data.conditions.map(({ name: condition, title }) => {
       const column = make("div", "", { class: "column", "data-condition": condition });
       const plan = make("div", "", { class: "plan" }), plot = make("div", "", { class: "signal" });
       const said = make("div", "", { class: "told" });
-      column.append(make("h3", title), ...(spatial ? [plan] : []), said, plot);
+      const heading = make("h3"), choose = make("button", title, { type: "button" });
+      choose.addEventListener("click", () => { state.condition = condition; mark(); tell(); });
+      heading.append(choose);
+      column.append(heading, ...(spatial ? [plan] : []), said, plot);
       return { condition, title, column, plan, said, plot };
     });
     get("across").replaceChildren(...columns.map((c) => c.column));
 
+    // Where the two trials of the chosen condition part: said, and marked on the bar.
+    const mark = () => {
+      const pair = current().pairs.find((p) => p.condition === state.condition);
+      const marks = pair?.parting?.marks ?? [], steps = [...new Set(marks.map(([step]) => step))];
+      for (const { condition, column } of columns) column.classList.toggle("chosen", condition === state.condition);
+      get("parting").hidden = !pair?.parting;
+      get("said").textContent = pair?.parting ? `${columns.find((c) => c.condition === state.condition).title}. ${pair.parting.said}` : "";
+      get("ticks").replaceChildren(...steps.map((step) => make("option", "", { value: step })));
+      get("marks").replaceChildren(...steps.map((step) => {
+        const words = marks.filter(([at]) => at === step).map(([, what]) => what).join(", ");
+        const button = make("button", `${(step * dt).toFixed(2)} s: ${words}`, { type: "button" });
+        button.addEventListener("click", () => { stop(); show(step); tell(); });
+        return button;
+      }));
+    };
     const redraw = () => {
       for (const { condition, title, plan, said, plot } of columns) {
         const pair = current().pairs.find((each) => each.condition === condition);
@@ -237,9 +240,9 @@ if (document.getElementById("viewer-data")) {
       for (const { condition, column, said } of columns) {
         const pair = scene.pairs.find((each) => each.condition === condition);
         column.hidden = !pair;
-        column.classList.toggle("chosen", condition === state.condition);
         if (pair) said.replaceChildren(...trials(pair).map((each) => make("p", told(each), { class: each.variant })), make("p", pair.void ? `Void: ${pair.void}.` : ""));
       }
+      mark();
       redraw();
     };
 
@@ -255,7 +258,7 @@ if (document.getElementById("viewer-data")) {
       if (place < 0) return false;
       stop();
       state.scene = place;
-      offer(0);
+      offer(0, "");
       if (data.conditions.some((p) => p.name === asked.condition)) state.condition = asked.condition;
       reset(Number.isFinite(Number(asked.t ?? NaN)) ? Math.round(Number(asked.t) / dt) : undefined);
       document.getElementById("viewer").scrollIntoView({ block: "start" });
@@ -280,6 +283,7 @@ if (document.getElementById("viewer-data")) {
 
     get("scene").addEventListener("change", (e) => { stop(); state.scene = Number(e.target.value); reset(); tell(); });
     get("show").addEventListener("change", (e) => { stop(); offer(Number(e.target.value)); reset(); tell(); });
+    get("find").addEventListener("input", () => { stop(); offer(Number(get("show").value)); reset(); tell(); });
     get("signal").addEventListener("change", (e) => { chooseSignal(Number(e.target.value)); redraw(); });
     get("time").addEventListener("input", (e) => { stop(); show(Number(e.target.value)); tell(); });
     get("play").addEventListener("click", () => { if (state.playing) { stop(); tell(); } else play(); });

@@ -105,15 +105,15 @@ def run_blocks(
     executor: Executor,
     built: Built,
     blocks: Iterable[BlockSpec],
-    settle: Callable[[BlockSpec, RecordedBlock], None],
+    handle_reply: Callable[[BlockSpec, RecordedBlock], None],
 ) -> None:
-    """Run blocks on the workers of an executor; `settle` gets each result.
+    """Run blocks on the workers of an executor; `handle_reply` gets each result.
 
     Raises a `UserError` that ended a worker.
     """
     waiting = iter(blocks)
 
-    def settled(block: BlockSpec, reply: RecordedBlock | Died | Wrong) -> None:
+    def handle(block: BlockSpec, reply: RecordedBlock | Died | Wrong) -> None:
         if isinstance(reply, Wrong) and isinstance(reply.error, UndeclaredFile):
             reply = RecordedBlock(error=str(reply.error), fails="data files")
         elif isinstance(reply, Wrong):
@@ -122,9 +122,9 @@ def run_blocks(
             reply = RecordedBlock(error=described(reply.error), fails=TRIALS)
         elif isinstance(reply, Died):
             reply = RecordedBlock(error=reply.how, fails=TRIALS)
-        settle(block, reply)
+        handle_reply(block, reply)
 
-    dispatch(executor, built, run_block, lambda _: next(waiting, None), settled)
+    dispatch(executor, built, run_block, lambda _: next(waiting, None), handle)
 
 
 def run_block(system: System, block: BlockSpec) -> RecordedBlock:

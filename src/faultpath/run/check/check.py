@@ -86,12 +86,12 @@ def check_system(
     def run(blocks: Sequence[BlockSpec], workers: int = workers) -> None:
         known = len(seen.runs) + len(blocks) if seen.runs else None
 
-        def settle(block: BlockSpec, result: RecordedBlock) -> None:
+        def handle_reply(block: BlockSpec, result: RecordedBlock) -> None:
             seen.runs[block.treatment.variant, block.why, block.tap] = result
             note(len(seen.runs), known)
 
         with local(workers) as executor:  # new processes: they share nothing with those before
-            run_blocks(executor, built, blocks, settle)
+            run_blocks(executor, built, blocks, handle_reply)
 
     run([BlockSpec(_treatment(seen, variant.name, {}), scenes, "first") for variant in variants])
     again = [block for name, first in seen.firsts() for block in _again(seen, name, first)]

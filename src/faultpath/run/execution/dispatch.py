@@ -16,7 +16,7 @@ from faultpath.run.code import Code, CodeState, Watch, named, source_state, syst
 from faultpath.run.opened import reads
 from faultpath.run.plan import SystemSpec
 from faultpath.run.registry import load_system, opened_by
-from faultpath.run.work.executor import Executor, Failed, Lost, WorkerLost, elsewhere, tell
+from faultpath.run.work.executor import Executor, Failed, Lost, WorkerLost, elsewhere, send_message
 from faultpath.system.checks import library_of
 from faultpath.system.declared import Library
 from faultpath.system.system import System
@@ -128,15 +128,15 @@ def dispatch(
     built: Built,
     work: Callable[[System, T], Any],
     take: Callable[[int], T | None],
-    settle: Callable[[T, Any], None],
+    handle_reply: Callable[[T, Any], None],
     limit_s: float | None = None,
     report: Callable[[], None] = lambda: None,
 ) -> None:
     """Run what `take` returns for a worker, until it returns nothing and all is settled.
 
-    `work`, a function of a module, gets the system and the task. `settle` gets what it returned,
-    `Wrong` for an error that it raised, or `Died` where a worker was lost over the task twice or
-    stopped at the time limit: as asked, as the system says, or an hour.
+    `work`, a function of a module, gets the system and the task. `handle_reply` gets what it
+    returned, `Wrong` for an error that it raised, or `Died` where a worker was lost over the task
+    twice or stopped at the time limit: as asked, as the system says, or an hour.
     """
     if limit_s is not None and not (math.isfinite(limit_s) and limit_s > 0):
         raise UserError(f"the time limit is {limit_s:g} s: give a number of seconds above 0")
@@ -160,9 +160,9 @@ def dispatch(
             ended = running.pop(worker)
             false_starts = 0 if ended.started else false_starts
             if isinstance(end, Failed):
-                settle(ended.task, Wrong(end.error))
+                handle_reply(ended.task, Wrong(end.error))
             elif not isinstance(end, Lost):
-                settle(ended.task, end.value)
+                handle_reply(ended.task, end.value)
             elif not ended.started:
                 false_starts += 1
                 if false_starts > _FALSE_STARTS:
@@ -171,12 +171,14 @@ def dispatch(
             elif not ended.tried:
                 again.append((ended.task, True))
             else:
-                settle(ended.task, Died(end.how))
+                handle_reply(ended.task, Died(end.how))
         for worker, attempt in tuple(running.items()):
             if attempt.overran(limit_s, built.job.system.name):
                 executor.cancel(worker)
                 del running[worker]
-                settle(attempt.task, Died(f"it was stopped at the time limit of {limit_s:g} s"))
+                handle_reply(
+                    attempt.task, Died(f"it was stopped at the time limit of {limit_s:g} s")
+                )
         report()
 
 
@@ -203,7 +205,7 @@ def _elsewhere(job: BuildSpec, work: Callable[[System, Any], Any], task: Any) ->
             if mistake is error:
                 raise
             raise mistake from error
-    tell("built")
+    send_message("built")
     return _built[0].work(work, task)
 
 

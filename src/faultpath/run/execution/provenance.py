@@ -12,7 +12,7 @@ from faultpath.core.files.plain import model_of
 from faultpath.core.trees import packages, release
 from faultpath.core.version import __version__
 from faultpath.run.execution.runner import RunResult
-from faultpath.run.provenance import RunProvenance
+from faultpath.run.provenance import RunCode, RunMachine, RunProvenance
 from faultpath.run.store.folder import seal
 from faultpath.run.work.executor import Executor
 
@@ -35,8 +35,7 @@ def run_provenance(
     """
     if not result.code and (folder / PROVENANCE).exists():
         earlier = model_of(contents(folder / PROVENANCE, LARGEST_TEXT), RunProvenance)
-        digests = {"outcomes_sha256": result.outcomes_sha256}
-        return amend(folder, earlier.model_copy(update=digests), names)
+        return amend(folder, earlier, names)
     package = Path(__file__).parents[2] / "__init__.py"
     commit, dirty = checkout(package, [package.parent])
     system_commit, system_dirty = None, None
@@ -47,29 +46,32 @@ def run_provenance(
     imported = {n.replace("_", "-"): version for n in sorted(used) if (version := release(n))}
     finished = datetime.now(UTC)
     provenance = RunProvenance(
-        faultpath_version=__version__,
-        commit=commit,
-        dirty=dirty,
         command=tuple(command),
-        python=platform.python_version(),
-        packages=packages() | imported,
-        platform=platform.platform(),
-        processor=processor(),
-        backend=backend,
-        workers=executor.count,
-        executor=executor.name,
+        code=RunCode(
+            faultpath_version=__version__,
+            commit=commit,
+            dirty=dirty,
+            system_fingerprint=result.system_fingerprint,
+            system_commit=system_commit,
+            system_dirty=system_dirty,
+            sources={name: of for code in result.code for name, of in code.state.files.items()},
+            data={name: of for code in result.code for name, of in code.state.data.items()},
+        ),
+        machine=RunMachine(
+            python=platform.python_version(),
+            packages=packages() | imported,
+            platform=platform.platform(),
+            processor=processor(),
+            backend=backend,
+            workers=executor.count,
+            executor=executor.name,
+        ),
         started=started.isoformat(timespec="seconds"),
         finished=finished.isoformat(timespec="seconds"),
         wall_s=round((finished - started).total_seconds(), 3),
         blocks_computed=result.blocks_computed,
         blocks_kept=result.blocks_kept,
-        system_fingerprint=result.system_fingerprint,
-        system_commit=system_commit,
-        system_dirty=system_dirty,
-        sources={name: digest for code in result.code for name, digest in code.state.files.items()},
-        data={name: digest for code in result.code for name, digest in code.state.data.items()},
         library_hash=result.library_hash,
-        outcomes_sha256=result.outcomes_sha256,
         rechecks=result.rechecks,
     )
     return amend(folder, provenance, names)

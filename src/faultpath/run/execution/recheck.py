@@ -132,7 +132,7 @@ class Rechecks:
         tasks = (Task(unit, scenes, recheck="sample"), Task(other, (alone,), recheck="guarded"))
         return tuple(t for t in tasks if (t.unit.key, t.recheck, t.scenes) not in self._kept)
 
-    def settle(self, task: Task, reply: Reply) -> None:
+    def handle_reply(self, task: Task, reply: Reply) -> None:
         """Compare what came of a second run with the first; keep what that showed."""
         assert task.recheck is not None
         treatment = task.unit.treatment

@@ -28,7 +28,7 @@ def repeat(
     tasks = [Task(unit, unit.scenes, recheck="sample") for unit in _sample(units)]
     waiting = iter(tasks)
 
-    def settle(task: Task, reply: Reply) -> None:
+    def handle_reply(task: Task, reply: Reply) -> None:
         if isinstance(reply, Wrong):
             raise reply.error
         treatment = task.unit.treatment
@@ -44,7 +44,7 @@ def repeat(
                 "Nothing in the folder was changed: choose a new one."
             )
 
-    work(lambda worker: next(waiting, None), settle)
+    work(lambda worker: next(waiting, None), handle_reply)
     count = sum(len(task.scenes) for task in tasks)
     return (
         f"{folder.path} was finished before {changed} changed. {count} of its trials ran again and "

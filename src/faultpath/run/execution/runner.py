@@ -98,8 +98,8 @@ def run_study(
         time_limit_s: Seconds that a worker may take over one block, or one scene of a block that
             failed, before it is stopped; by default what the system says, or an hour.
         recheck: Runs a few scenes again and compares; see `RunResult.findings`.
-        stop: Asked at each look of a study that has some, and ends it; the result holds the scenes
-            up to that look.
+        stop: Asked at each analysis of a study that has some, and ends it; the result holds the
+            scenes up to that analysis.
 
     Raises:
         UserError: The folder or the study cannot be run.
@@ -131,17 +131,17 @@ def run_study(
                 notice(repeat(blocks, units, run, work, changed))
             state = RunState(study, library, units, run, stop)
             with run.open(manifest, notice, shared):
-                schedule = TaskQueue(state.resume(notice), study.look > 0)
+                schedule = TaskQueue(state.resume(notice), study.scenes_per_analysis > 0)
                 progress(state.progress())
                 work(
                     lambda worker: None if state.enough() else schedule.take(worker),
-                    lambda task, reply: schedule.put(state.settle(task, reply)),
+                    lambda task, reply: schedule.put(state.take_in(task, reply)),
                     report=lambda: progress(state.progress()),
                 )
                 again = Rechecks(state.units, state.outcomes, run)
                 if recheck:
                     waiting = iter(again.tasks())
-                    work(lambda worker: next(waiting, None), again.settle)
+                    work(lambda worker: next(waiting, None), again.handle_reply)
                 trials, findings = state.trials(), (*state.findings(), *again.findings())
                 repeats = not any(recheck.differs for recheck in again.flown())
                 deliveries = Deliveries.of(study, state.taps(), trials, findings, repeats)
@@ -174,7 +174,7 @@ def _units(study: Study, built: Built, manifest: Manifest) -> tuple[Unit, ...]:
     """
     library, system = built.library, built.system
     scenes: Sequence[SceneRef] = selected(study, library)
-    if study.look:
+    if study.scenes_per_analysis:
         scenes = sorted(scenes, key=lambda scene: study.scenes.index(scene.id))
     check_rows(study.rows, system.variants)
     fingerprint = f"{manifest.faultpath_version} {manifest.code.digest}"
@@ -182,7 +182,9 @@ def _units(study: Study, built: Built, manifest: Manifest) -> tuple[Unit, ...]:
     units: list[Unit] = []
     for part, treatments in study.parts().items():
         chosen = [scene for scene in scenes if scene.id in part] if part else scenes
-        units += plan(treatments, chosen, size, library, fingerprint, study.look, part)
+        units += plan(
+            treatments, chosen, size, library, fingerprint, study.scenes_per_analysis, part
+        )
     return tuple(units)
 
 

@@ -32,18 +32,18 @@ def plan(
     block_size: int,
     library: Library,
     fingerprint: str,
-    look: int = 0,
+    scenes_per_analysis: int = 0,
     part: tuple[str, ...] = (),
 ) -> tuple[Unit, ...]:
     """Return every unit: block by block, in each the treatments in order.
 
     A block is a place in the library, not a count of selected scenes, so a selection and the whole
-    library share the blocks that both hold in full. With a `look`, blocks are so many scenes in
-    the order given.
+    library share the blocks that both hold in full. With `scenes_per_analysis`, blocks are
+    so many scenes in the order given.
     """
     parts: dict[int, list[str]] = {}
     for place, scene in enumerate(scenes):
-        block = place // look if look else scene.index // block_size
+        block = place // scenes_per_analysis if scenes_per_analysis else scene.index // block_size
         parts.setdefault(block, []).append(scene.id)
     units: list[Unit] = []
     dumped = [

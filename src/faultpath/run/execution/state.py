@@ -23,7 +23,7 @@ FEW = 5
 _WHOLE = "All scenes of the block at once: "
 """Begins the traceback of a block that raised an error, of which each scene is then run alone."""
 Stop = Callable[[Trials], bool]
-"""Says of the trials of all looks so far whether they are enough."""
+"""Says of the trials of all analyses so far whether they are enough."""
 
 
 class NothingRuns(UserError):
@@ -42,7 +42,7 @@ class _Partial:
 class RunState:
     """Stores each unit as soon as all its scenes have an outcome.
 
-    The looks of a study are taken in order, each as soon as all of its trials are there: the same
+    The analyses of a study are made in order, each as soon as all of its trials are there: the same
     trials count whatever the number of workers, and wherever a run was interrupted.
     """
 
@@ -68,8 +68,8 @@ class RunState:
         self._done = self._done_in_rows = 0
         """Trials with an outcome, and in how many of the rows' trials they stand."""
         self._failed, self._sound = 0, False
-        self._stop = stop if study.look else None
-        self._looks, self._over = 0, False
+        self._stop = stop if study.scenes_per_analysis else None
+        self._analyses, self._over = 0, False
 
     def resume(self, notice: Callable[[str], None]) -> list[Unit]:
         """Take over what is stored, say how much and from when, and return what is left to do.
@@ -99,7 +99,7 @@ class RunState:
             notice(f"Kept {self.progress().count}{when}{tried}.")
         return missing
 
-    def settle(self, task: Task, reply: Reply) -> tuple[Task, ...]:
+    def take_in(self, task: Task, reply: Reply) -> tuple[Task, ...]:
         """Take in a reply and return the tasks that follow from it.
 
         A block whose program raised an error, or that its worker did not outlive, is run again
@@ -181,27 +181,27 @@ class RunState:
         self._done_in_rows += trials * self._rows[unit.treatment_key, unit.part]
 
     def enough(self) -> bool:
-        """Take the looks whose trials are all there; return whether the study stops."""
+        """Take the analyses whose trials are all there; return whether the study stops."""
         while self._stop and not self._over:
-            look = [unit.key for unit in self._units if unit.block == self._looks]
-            if not look or not self._taps.keys() >= set(look):
+            batch = [unit.key for unit in self._units if unit.block == self._analyses]
+            if not batch or not self._taps.keys() >= set(batch):
                 break
-            self._looks += 1
+            self._analyses += 1
             self._over = self._stop(self.trials())
         return self._over
 
     def trials(self) -> Trials:
-        """Return the trials that count: all, or those of the looks that were taken."""
+        """Return the trials that count: all, or those of the analyses that were made."""
         study = self._study
         if self._stop:
-            scenes = study.scenes[: self._looks * study.look]
+            scenes = study.scenes[: self._analyses * study.scenes_per_analysis]
             study = study.model_copy(update={"scenes": scenes})
         return _assembled(study, self._library, self.outcomes)
 
     @property
     def units(self) -> tuple[Unit, ...]:
         """The units whose trials count."""
-        return tuple(unit for unit in self._units if not self._stop or unit.block < self._looks)
+        return tuple(unit for unit in self._units if not self._stop or unit.block < self._analyses)
 
     def taps(self) -> dict[TreatmentPart, tuple[TapCount, ...]]:
         """Return what the taps did in the units that count."""

@@ -1,23 +1,50 @@
 """Question about results that other tools wrote."""
 
 from collections.abc import Mapping, Sequence
-from typing import Annotated, ClassVar, Literal, cast
+from typing import Annotated, ClassVar, Literal, Required, cast
 
 from pydantic import BeforeValidator, Field
+from typing_extensions import TypedDict
 
 from faultpath.run.question import GENERALISE, Asked, Flag, Generalise
 from faultpath.run.texts import Place, several
 
-COLUMNS = (
-    "variant",
-    "scene",
-    "seed",
-    "task",
-    "condition",
-    "success",
-    "initial",
-    "time_s",
-)
+Name = str | float
+
+
+class Row(TypedDict, total=False):
+    """One trial: a row of a CSV or Parquet file, or a line of JSON. Other columns are ignored."""
+
+    variant: Annotated[
+        Name | None, Field(description="The version, unless it is named with the file.")
+    ]
+    scene: Required[
+        Annotated[Name, Field(description="Two trials of one scene and seed are a pair.")]
+    ]
+    seed: Annotated[Name | None, Field(description="Seed or number of the trial in its scene.")]
+    task: Annotated[Name | None, Field(description="Task that the scene is of.")]
+    condition: Annotated[
+        Name | None,
+        Field(
+            description="`nominal`, `shared`, or the name of the module that alone had the fault."
+        ),
+    ]
+    success: Required[
+        Annotated[
+            bool | float | str | None,
+            Field(
+                description="true or false, 1 or 0; `crash`, `timeout`, or `failed` for a trial "
+                "without an outcome; a score with --success-from."
+            ),
+        ]
+    ]
+    initial: Annotated[
+        Name | None, Field(description="A hash of the initial state, which proves pairs.")
+    ]
+    time_s: Annotated[float | str | None, Field(description="Time at which it ended, s.")]
+
+
+COLUMNS = tuple(Row.__annotations__)
 """Properties read of a trial; each is also the name of its column where none is given."""
 
 
@@ -48,6 +75,13 @@ class JudgeQuestion(Asked):
     """Question about results that other tools wrote."""
 
     panel: ClassVar[str] = "What is compared"
+
+    # What only an audit may be asked.
+    options: ClassVar[Mapping[str, str]] = {}
+    metric: ClassVar[str] = ""
+    thresholds: ClassVar[tuple[float, ...]] = ()
+    stop_when: ClassVar[None] = None
+    margin_pp: ClassVar[None] = None
 
     baseline: str = Field(description="Version to compare with, as the results name it.")
     repair: str = Field(description="Version that is meant to be better.")

@@ -60,7 +60,11 @@ def check_same(folder: Path, previous: Manifest, manifest: Manifest, shared: boo
     """
     same_study = (
         ("set of variants, faults or seeds", previous.study.rows, manifest.study.rows),
-        ("number of scenes from look to look", previous.study.look, manifest.study.look),
+        (
+            "number of scenes from analysis to analysis",
+            previous.study.scenes_per_analysis,
+            manifest.study.scenes_per_analysis,
+        ),
     )
     differences = [
         what

@@ -195,7 +195,7 @@ def elsewhere() -> str:
 _on_message: ContextVar[OnMessage] = ContextVar("on_message", default=ignore)
 
 
-def tell(message: object) -> None:
+def send_message(message: object) -> None:
     """Tell whoever submitted the call that runs here; outside of one, nobody."""
     _on_message.get()(message)
 

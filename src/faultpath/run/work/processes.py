@@ -29,7 +29,7 @@ from faultpath.run.work.executor import (
     OnMessage,
     ended,
     ignore,
-    tell,
+    send_message,
 )
 
 KEEP_MEMORY = {
@@ -184,7 +184,7 @@ def main(channel: int, lifeline: int) -> None:
 def show(message: Warning | str, *more: Any, **named: Any) -> None:
     """Hand a notice to the parent, which shows it once; show other warnings in a line."""
     if isinstance(message, Notice):
-        tell(message)
+        send_message(message)
     else:
         show_warning(message, *more, **named)
 

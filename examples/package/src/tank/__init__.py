@@ -1,0 +1,1 @@
+"""A tank with a level sensor, to audit with faultpath."""

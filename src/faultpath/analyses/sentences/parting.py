@@ -1,0 +1,130 @@
+"""Where two trials of a scene part, in words."""
+
+from faultpath.analyses.facts import ComparisonFacts
+from faultpath.analyses.parting import Difference, Ended, Kind, Parting
+from faultpath.analyses.sentences.wording import MINUS, capital, ended, series, unit, where
+from faultpath.core.text import one_line
+from faultpath.system.outcome import control_steps
+
+DIFFERS: dict[Kind, str] = {
+    "reading": "readings differ",
+    "command": "commands differ",
+    "state": "state differs",
+}
+"""What differs, in two words."""
+_LEAST, _MOST = 3, 17
+"""Digits of the two values: so few that they still look different."""
+
+
+def compared(parting: Parting) -> str:
+    """Name what a parting is of: scene, seed, and what the two trials have in common."""
+    one, other = parting.trials
+    both = f"{one.condition}, {one.variant} and {other.variant}"
+    if one.variant == other.variant:
+        both = f"{one.variant}, {one.condition} and {other.condition}"
+    return f"{parting.scene}, seed {parting.seed}, {both}"
+
+
+def parted(facts: ComparisonFacts, parting: Parting) -> str:
+    """Say what differs first between two trials and when, what follows, and how each ended."""
+    if missing := [_missing(end) for end in parting.trials if end.missing]:
+        return f"Nothing to compare: {series(missing)}."
+    one, other = parting.trials
+    clauses = [*_differences(one, other, parting), _ends(facts, one, other)]
+    return f"{capital('; '.join(clauses))}.{_alone(one, other, parting)}"
+
+
+def ending(parting: Parting, dt_s: float) -> list[tuple[int, str]]:
+    """Return the step at which the first of the two trials has ended, with who that is; nothing
+    where both do at once."""
+    times = [(end.time_s, end.variant) for end in parting.trials if end.time_s is not None]
+    if len(times) < 2 or times[0][0] == times[1][0]:
+        return []
+    time_s, variant = min(times)
+    return [(control_steps(time_s, dt_s), f"{variant} has ended")]
+
+
+def _missing(trial: Ended) -> str:
+    what = f"{trial.variant} {where(trial.condition)}"
+    if trial.status is None:
+        return f"{what} did not run"
+    return f"{what} failed{f' ({one_line(trial.error)})' if trial.error else ''}"
+
+
+def _differences(one: Ended, other: Ended, parting: Parting) -> list[str]:
+    """Return a clause for each kind: those that differ in the order of time, then the others."""
+    order = list(DIFFERS)
+    first = sorted(parting.first, key=lambda kind: (parting.first[kind].step, order.index(kind)))
+    equal = [kind for kind in order if kind in parting.compared and kind not in first]
+    if not parting.compared:
+        return ["nothing was recorded of both trials that could be compared"]
+    same = [f"no recorded {series(list(equal)).replace(' and ', ' or ')} differs"] if equal else []
+    if not first:
+        return same
+    at = parting.first[first[0]]
+    clauses = [_beginning(first[0], at, one, other)]
+    for kind in first[1:]:
+        late = parting.first[kind].time_s - at.time_s
+        when = f"{_time(late)} s later " if late > 0 else ""
+        clauses.append(f"{when}the {DIFFERS[kind]}{'' if when else ' at the same time'}")
+        at = parting.first[kind]
+    return clauses + same
+
+
+def _beginning(kind: Kind, at: Difference, one: Ended, other: Ended) -> str:
+    """Return the clause on the first difference of all, with both values."""
+    values, unit_of = _values(at), "" if at.unit in ("", "1") else f" {unit(at.unit)}"
+    old, new = values
+    name = at.name.replace("_", " ")
+    if at.component is not None:
+        name += f" ({at.part or f'component {at.component}'})"
+    of, under = f" of {other.variant}", ""
+    if one.variant == other.variant:
+        of, under = "", f", {where(other.condition)},"
+    more = f" (and {at.others} more)" if at.others else ""
+    begin = f"at {_time(at.time_s)} s{under}"
+    if kind == "reading":
+        readers = f"the {series([module.replace('_', ' ') for module in at.modules])}{of}"
+        if at.delivered:
+            return f"{begin} {readers} got {new}{unit_of} for {name} instead of {old}{more}"
+        verb = "reads" if len(at.modules) == 1 else "read"
+        return f"{begin} the {name} that {readers} {verb} is {new}{unit_of} instead of {old}{more}"
+    return f"{begin} the {DIFFERS[kind]}: {name}{of} is {new}{unit_of} instead of {old}{more}"
+
+
+def _ends(facts: ComparisonFacts, one: Ended, other: Ended) -> str:
+    first, second = (
+        f"{'' if end.time_s is None else f' at {_time(end.time_s)} s'} "
+        f"({ended(facts, end.status or '')})"
+        for end in (one, other)
+    )
+    if first == second:
+        return f"both ended{first}"
+    if one.variant == other.variant:
+        places = where(one.condition), where(other.condition)
+        return f"it ended{first} {places[0]},{second} {places[1]}"
+    return f"{one.variant} ended{first}, {other.variant}{second}"
+
+
+def _alone(one: Ended, other: Ended, parting: Parting) -> str:
+    """Return a sentence for each version that has modules of its own."""
+    return "".join(
+        f" Only {end.variant} has the module{'s' if len(modules) > 1 else ''} "
+        f"{series([name.replace('_', ' ') for name in modules])}."
+        for end, modules in zip((one, other), parting.alone, strict=True)
+        if modules
+    )
+
+
+def _values(at: Difference) -> tuple[str, str]:
+    """Return both values with the fewest digits with which they differ."""
+    for digits in range(_LEAST, _MOST):
+        one, other = (f"{value:.{digits}g}".replace("-", MINUS) for value in at.values)
+        if one != other:
+            return one, other
+    return repr(at.values[0]), repr(at.values[1])
+
+
+def _time(seconds: float) -> str:
+    hundredths = f"{seconds:.2f}"
+    return hundredths if abs(float(hundredths) - seconds) < 1e-6 else f"{seconds:.3f}"

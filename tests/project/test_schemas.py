@@ -1,0 +1,63 @@
+"""The JSON Schemas that the package brings are those of its models, and fit what is written."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+import schema_files
+
+ROOT = Path(__file__).resolve().parents[2]
+RESULTS = [
+    path
+    for name in ("record", "map", "scan")
+    for path in sorted((ROOT / "docs" / "reference").glob(f"*/{name}.json"))
+]
+ASKED = {"baseline": "old", "repair": "new"}
+FITTING = [
+    ("audit-question", ASKED | {"fault": "gain:scale=0.6", "seeds": [0, 1], "thresholds": "1,2"}),
+    ("map-question", ASKED | {"fault": "gain", "against": ["controller", "observer"]}),
+    ("scan-question", {"variant": "old", "fault": ["gain:scale=1.2"], "seeds": "0,1"}),
+    ("judge-question", ASKED | {"columns": {"scene": "episode"}}),
+    ("judge-row", {"variant": "old", "scene": 7, "success": True, "reward": 0.5}),
+]
+WRONG = [
+    ("audit-question", ASKED),
+    ("audit-question", ASKED | {"fault": "gain:scale=0.6", "scene": 4}),
+    ("map-question", ASKED | {"fault": "gain"}),
+    ("scan-question", {"variant": "old", "trials": "no"}),
+    ("judge-question", ASKED | {"cluster": "model"}),
+    ("judge-row", {"variant": "old", "scene": 7}),
+]
+
+
+def validator(name: str) -> Any:
+    path = schema_files.FOLDER / f"{name}.schema.json"
+    schema = json.loads(path.read_text("utf-8"))
+    jsonschema.Draft202012Validator.check_schema(schema)
+    return jsonschema.Draft202012Validator(schema)
+
+
+def test_they_are_those_of_the_models() -> None:
+    texts = schema_files.files()
+    assert set(schema_files.FOLDER.iterdir()) == set(texts)
+    stale = [path.name for path, text in texts.items() if path.read_text("utf-8") != text]
+    assert stale == [], "run python tools/documents.py"
+
+
+@pytest.mark.parametrize("path", RESULTS, ids=lambda path: path.parent.name)
+def test_stored_results_fit(path: Path) -> None:
+    result = json.loads(path.read_text("utf-8"))
+    validator(path.stem).validate(result)
+    assert not validator(path.stem).is_valid({**result, "format": "none"})
+
+
+@pytest.mark.parametrize(("name", "content"), FITTING)
+def test_what_is_taken_fits(name: str, content: dict[str, object]) -> None:
+    validator(name).validate(content)
+
+
+@pytest.mark.parametrize(("name", "content"), WRONG)
+def test_what_is_refused_does_not_fit(name: str, content: dict[str, object]) -> None:
+    assert not validator(name).is_valid(content)
