@@ -226,13 +226,13 @@ def test_a_picture_moves_with_the_clock_and_lifts_its_pen(
     opened.close()
 
 
-def test_words_find_a_scene_among_hundreds(page: Page) -> None:
+def test_words_find_a_scene_among_many(page: Page) -> None:
     find, scenes = page.locator("#viewer-find"), page.locator("#viewer-scene")
     assert "more: type to find one" in scenes.locator("option").last.inner_text()
     assert scenes.locator("option").count() < 45
-    find.fill("ROOMS seed 2 04")
+    find.fill("ROOMS seed 2 00")
     options = scenes.locator("option").all_inner_texts()
-    assert options == [f"rooms-{number:03d}, rooms, seed 2" for number in (4, 44, 49)]
+    assert options == [f"rooms-{number:03d}, rooms, seed 2" for number in (4, 9)]
     assert page.evaluate("location.hash").startswith("#scene=rooms-004&seed=2&")
     find.fill("nowhere")
     assert scenes.locator("option").last.inner_text() == "no scene has these words"
