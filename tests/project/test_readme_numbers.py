@@ -32,7 +32,7 @@ def record_of(run: str) -> DecisionRecord:
 def numbers(value: object) -> object:
     """Everything of a record that is no sentence, without the last digits of one processor."""
     if isinstance(value, DecisionRecord):
-        return numbers(value.model_dump(exclude={"question": {"system"}}))
+        return numbers(value.model_dump(exclude={"facts": {"system"}}))
     if isinstance(value, dict):
         return {key: numbers(part) for key, part in value.items() if key != "words"}
     if isinstance(value, list | tuple):
