@@ -119,7 +119,7 @@ class Flight:
                 library=design.library,
                 scenes=self.scenes[:scenes],
                 rows=tuple(rows.values()),
-                look=design.look,
+                scenes_per_analysis=design.look,
             )
             began, first = time.monotonic(), scenes == design.first
             shared = {"shared": True, "executor": executor, "recheck": first}

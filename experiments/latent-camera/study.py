@@ -14,7 +14,7 @@ from pathlib import Path
 import yaml
 
 from faultpath.analyses.compared import compared
-from faultpath.analyses.family import Family, decide_conditions
+from faultpath.analyses.family import TestedContrasts, decide_conditions
 from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.faults import at_readers
 from faultpath.run import (
@@ -120,7 +120,7 @@ def cancelled(design: Design, table: Trials) -> list[dict]:
     ]
 
 
-def _said(success, family: Family) -> dict:
+def _said(success, family: TestedContrasts) -> dict:
     return {
         "success": {
             name: [float(treatment.mean()) for treatment in treatments]

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from faultpath_quadrotor.choices import STATE_NOISE_STD
+from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.models import predictor, reconstruction
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.variants import setups
@@ -15,12 +16,12 @@ pytestmark = pytest.mark.usefixtures("short")
 
 def test_a_variants_seed_chooses_the_training_of_what_its_variant_names():
     found = {each.name: each for each in setups(quadrotor(**LEARNED).options)}
-    assert found["gru"].load_reconstruction(2) is reconstruction("gru", 2)
-    assert found["gru"].load_predictor(2) is predictor("wm-a-wind", 0)
-    assert found["wm-a"].load_predictor(2) is predictor("wm-a", 2)
-    assert found["wm-a-wind/gru"].load_predictor(2) is predictor("wm-a-wind", 2)
+    assert found["gru"].load_reconstruction(2) is reconstruction("gru", 2, CPU)
+    assert found["gru"].load_predictor(2) is predictor("wm-a-wind", 0, CPU)
+    assert found["wm-a"].load_predictor(2) is predictor("wm-a", 2, CPU)
+    assert found["wm-a-wind/gru"].load_predictor(2) is predictor("wm-a-wind", 2, CPU)
     other = {each.name: each for each in setups(quadrotor(**LEARNED, predictor_seed="1").options)}
-    assert other["gru"].load_predictor(2) is predictor("wm-a-wind", 1)
+    assert other["gru"].load_predictor(2) is predictor("wm-a-wind", 1, CPU)
 
 
 def test_a_noisy_state_is_late_and_the_same_for_everyone():

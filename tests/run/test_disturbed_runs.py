@@ -35,14 +35,19 @@ def run(folder: Path, asked: Study, reached: int, **more: Any) -> RunResult:
         return len({trial.outcome.scene for trial in table}) >= reached
 
     return run_study(
-        asked, folder, workers=0, recheck=False, stop=stop if asked.look else None, **more
+        asked,
+        folder,
+        workers=0,
+        recheck=False,
+        stop=stop if asked.scenes_per_analysis else None,
+        **more,
     )
 
 
 def asked(look: int, scenes: tuple[str, ...], gate: Path) -> Study:
     """Return a study in which one scene fails while the file `gate` exists."""
     whole = study(scenes, raises="s05", **{"while": str(gate)})
-    return whole.model_copy(update={"look": look, "rows": rows()[::3]})
+    return whole.model_copy(update={"scenes_per_analysis": look, "rows": rows()[::3]})
 
 
 @cache

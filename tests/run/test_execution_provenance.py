@@ -46,25 +46,24 @@ def test_provenance_tells_the_run_its_repository_and_every_file_that_flew(tmp_pa
         return run_provenance(tmp_path / name, [], result, started, ["faultpath"], local(1))
 
     untracked = told("untracked")
-    assert (untracked.system_commit, untracked.system_dirty) == (None, None)
+    assert (untracked.code.system_commit, untracked.code.system_dirty) == (None, None)
     assert untracked.command == ("faultpath",)
-    assert untracked.processor
+    assert untracked.machine.processor
     assert 0 < untracked.wall_s < 60
     assert untracked.started <= untracked.finished
     _git(tmp_path / "mine", "init", "-q")
     _git(tmp_path / "mine", "add", ".")
     _git(tmp_path / "mine", "commit", "-qm", "one")
     clean = told("clean")
-    assert clean.system_commit == _git(tmp_path / "mine", "rev-parse", "HEAD")
-    assert clean.system_dirty is False
-    assert {"my.py", mine.helper.name, "faultpath"} <= clean.sources.keys()
-    assert clean.sources["my.py"] == hashlib.sha256(mine.file.read_bytes()).hexdigest()
-    assert clean.data.keys() == {"push.txt"}
-    assert {"numpy", "pyarrow", "pydantic-core"} <= clean.packages.keys()
+    assert clean.code.system_commit == _git(tmp_path / "mine", "rev-parse", "HEAD")
+    assert clean.code.system_dirty is False
+    assert {"my.py", mine.helper.name, "faultpath"} <= clean.code.sources.keys()
+    assert clean.code.sources["my.py"] == hashlib.sha256(mine.file.read_bytes()).hexdigest()
+    assert clean.code.data.keys() == {"push.txt"}
+    assert {"numpy", "pyarrow", "pydantic-core"} <= clean.machine.packages.keys()
     (tmp_path / "mine" / "notes").write_text("beside what flies")
     again = told("clean")
-    assert again.system_dirty is False
+    assert again.code.system_dirty is False
     assert [(run.blocks_computed, run.blocks_kept) for run in (clean, again)] == [(3, 0), (0, 3)]
-    assert again.outcomes_sha256 == clean.outcomes_sha256
     mine.data.write_text("1.0")
-    assert told("dirty").system_dirty is True
+    assert told("dirty").code.system_dirty is True

@@ -15,7 +15,7 @@ from scipy.stats import multinomial
 
 from faultpath.analyses.compared import Outcomes as Variants
 from faultpath.analyses.contrasts import alpha_shares
-from faultpath.analyses.family import Family, decide_conditions
+from faultpath.analyses.family import TestedContrasts, decide_conditions
 from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.core.streams import generator
 from faultpath.stats.estimate import ALPHA
@@ -174,7 +174,7 @@ def audit_of(
     return found
 
 
-def announces(family: Family) -> bool:
+def announces(family: TestedContrasts) -> bool:
     """Return whether anything is detected: an effect, a change, a reversal."""
     return any(each.sign for part in (family.effects, family.changes) for each in part.values())
 
