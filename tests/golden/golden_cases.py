@@ -282,7 +282,7 @@ def of_map(record: Any) -> dict[str, Any]:
 
 def of_paper() -> dict[str, Any]:
     """Return what the claims of the paper come to in a run that is made up."""
-    sys.path += [str(HERE.parent / "paper")]
+    sys.path += [str(HERE.parent), str(HERE.parent / "paper")]
     from faultpath_paper.claims import evaluate
     from study_toys import whole
 
