@@ -65,7 +65,11 @@ def test_only_a_run_that_does_not_repeat_is_run_again(run_again, monkeypatch) ->
 def test_a_sample_is_repeated_once_by_the_same_code(run_again, monkeypatch) -> None:
     repeated: list[str] = []
     toy = references.load("toy")
-    write = lambda run: [repeated.append(run.name), toy.repeats][1]  # noqa: E731
+
+    def write(run: references.Run) -> Repeats | None:
+        repeated.append(run.name)
+        return toy.repeats
+
     monkeypatch.setattr(references.repeats, "write", write)
     for state in ("", "one", "one", "two", ""):
         monkeypatch.setattr(references, "state", lambda run, state=state: state)

@@ -1,4 +1,4 @@
-"""The decision: effects, break-even frequency, verdict."""
+"""Analyses of trials: effects, break-even frequencies, maps, scans, and what they conclude."""
 
 from faultpath.analyses.facts import ComparisonFacts
 from faultpath.analyses.model import Condition

@@ -154,10 +154,10 @@ def _ended(trial: Heard) -> Ended:
 
 def _first(series: Iterable[_Series], dt_s: float) -> Difference | None:
     """Return the first difference; of several at one step that of the first series."""
-    found = [(at, of) for of in series if (at := of.differs())]
-    if not found:
+    differing = [(at, of) for of in series if (at := of.differs())]
+    if not differing:
         return None
-    (step, component), first = min(found, key=lambda pair: pair[0][0])
+    (step, component), first = min(differing, key=lambda pair: pair[0][0])
     values = float(first.one[step, component]), float(first.other[step, component])
     many = first.one.shape[1] > 1
     units = first.unit.split(", ")
@@ -173,7 +173,7 @@ def _first(series: Iterable[_Series], dt_s: float) -> Difference | None:
         component=component + 1 if many else None,
         part=first.parts[component] if first.parts and many else "",
         values=values,
-        others=sum(at[0] == step for at, _ in found) - 1,
+        others=sum(at[0] == step for at, _ in differing) - 1,
     )
 
 
@@ -189,7 +189,7 @@ def _readings(system: SystemShown, one: Heard, other: Heard) -> Iterator[_Series
     named = [{signal.name: signal for signal in of.signals} for of in (one, other)]
     read = set(both[0].readers) & set(both[1].readers)
     commanded = {s.name for s in system.interface.sources if s.provenance is Provenance.COMMANDED}
-    held: list[_Series] = []
+    unchanged: list[_Series] = []
     for channel in system.interface.channels:
         readers = [reader for reader in channel.readers if reader in read]
         modules = tuple(dict.fromkeys(map(module_of, readers)))
@@ -199,8 +199,8 @@ def _readings(system: SystemShown, one: Heard, other: Heard) -> Iterator[_Series
         for reader in readers:
             yield from _delivered(channel, reader, named, apart[0] if apart else None)
         if modules and not commanded & {old, new}:
-            held += source
-    yield from held
+            unchanged += source
+    yield from unchanged
 
 
 def _delivered(
