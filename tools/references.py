@@ -3,6 +3,7 @@
     python tools/references.py            run all again that are stale, the quickest first
     python tools/references.py NAME ...   run these, stale or not
     python tools/references.py --list     say which are stale, and how long each took
+    python tools/references.py --list --foreign    the same, also where other packages are needed
 
 Runs fly from a checkout of the last commit, in `build/references`. Each becomes the reference as
 soon as it ends; one that was cut short is resumed. `carry-over`, `state-errors` and `paper` have
@@ -44,15 +45,21 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("names", nargs="*")
     parser.add_argument("--list", action="store_true", help="fly nothing")
+    parser.add_argument(
+        "--foreign",
+        action="store_true",
+        help="with --list: also in other environments, which load slowly",
+    )
     options = parser.parse_args()
     runs = by_time()
     if unknown := sorted({*options.names} - {*runs}):
         parser.error(f"no reference run is called {unknown[0]}: there are {', '.join(runs)}")
+    if options.list:
+        show(runs.values(), foreign=options.foreign)
+        return
     chosen = options.names or [
         name for name, result in show(runs.values()).items() if result and not result.current
     ]
-    if options.list:
-        return
     commit = checkout()
     for name in chosen:
         print(f"{name}: {' '.join(runs[name].provenance.command)}", flush=True)
@@ -62,12 +69,12 @@ def main() -> None:
         sys.exit(documents.main(["--images"]))
 
 
-def show(runs: Iterable[Run]) -> dict[str, Repeats | None]:
+def show(runs: Iterable[Run], foreign: bool = True) -> dict[str, Repeats | None]:
     """Repeat a sample of each run, print what came of it, and keep that beside the run.
 
     Each environment has a process, beside this one, for all of its runs. `None` stands for a run
-    of which the environment is not here. A sample that code, packages and processor have repeated
-    before is not repeated again.
+    of which the environment is not here, or not used (`foreign`). A sample that code, packages and
+    processor have repeated before is not repeated again.
     """
     every = tuple(runs)
     states = {run.name: state(run) for run in every}
@@ -77,7 +84,7 @@ def show(runs: Iterable[Run]) -> dict[str, Repeats | None]:
     own = [run for run in runs if environment(run) == ".venv"]
     others: list[tuple[list[Run], subprocess.Popen[bytes]]] = []
     for place in sorted({environment(run) for run in runs} - {".venv"}):
-        if (python := ROOT / place / "bin" / "python").is_file():
+        if foreign and (python := ROOT / place / "bin" / "python").is_file():
             there = [run for run in runs if environment(run) == place]
             command = (str(python), "-c", code, *(run.name for run in there))
             others.append((there, subprocess.Popen(command, cwd=ROOT, env=variables)))
@@ -91,7 +98,7 @@ def show(runs: Iterable[Run]) -> dict[str, Repeats | None]:
         if result and states[run.name]:
             KEPT.mkdir(parents=True, exist_ok=True)
             (KEPT / run.name).write_text(states[run.name], "utf-8")
-        text = str(result) if result else f"not asked: it needs {environment(run)}"
+        text = str(result) if result else f"not repeated here: it needs {environment(run)}"
         text += f" ({result.first})" if result and result.first else ""
         print(f"{run.name:36s}{run.provenance.wall_s:6.0f} s  {text}", flush=True)
     return results
