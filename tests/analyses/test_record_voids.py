@@ -154,7 +154,7 @@ def test_how_many_failures_would_have_to_run_is_what_settles_it():
     new, old, failed = scene < 40, scene >= 60, scene >= 70
     effect = audit((ends(new, failed), ends(old))).effects[0]
     assert effect.unsettled
-    needed, of_baseline = effect.missing.repairs
+    needed, of_baseline = effect.missing.reruns
     assert of_baseline == 0
     leads = [
         audit((ends(new[left], failed[left]), ends(old[left]))).effects[0].leads

@@ -1,6 +1,6 @@
 """The contrasts of an audit: effects, changes, and their shares of the error rate."""
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,14 +15,20 @@ from faultpath.stats.resamples import Resamples
 
 
 @dataclass(frozen=True)
-class Measure:
-    """How success under one condition becomes a contrast."""
+class Design:
+    """How success under the conditions of an audit becomes contrasts, each with its test."""
 
     models: bool
+    """Whether it speaks of newly trained models as well."""
     sequential: bool
+    """Whether the number of scenes was not fixed beforehand."""
 
     def effect(self, repair: Floats, baseline: Floats) -> Contrast:
-        """Return the effect over the scenes of which a pair has both outcomes."""
+        """Return the effect over the scenes with at least one complete pair, with its test."""
+        return with_test(self.untested(repair, baseline))
+
+    def untested(self, repair: Floats, baseline: Floats) -> Contrast:
+        """Return the same without its test, which takes long where scenes are many."""
         # Nothing rests on resamples where outcomes are yes or no.
         scenes = int(paired_scenes(repair, baseline).sum())
         resamples = Resamples.draw("family", scenes, n_resamples=1)
@@ -45,22 +51,22 @@ class Measure:
             ends = [(a[:, ran[0] & ran[1]], b[:, ran[0] & ran[1]]) for a, b in ends]
         if not kept.any() or ends[0][0].shape[1] < 1 + self.models:
             return None
-        return self.effect(*ends[0]), self.effect(*ends[1])
+        return self.untested(*ends[0]), self.untested(*ends[1])
 
     def contrasts(
-        self, success: Mapping[str, Outcomes], alone: Mapping[str, Outcomes], tested: Sequence[str]
-    ) -> Iterator[tuple[str, Contrast]]:
-        """Yield the tested effects, and their changes from those `alone` to the shared one, by
-        name."""
-        for condition in tested:
-            yield effect_name(condition), self.effect(*success[condition])
-        for condition in isolated(tested):
-            if ends := self.together(alone[condition], success[SHARED]):
-                yield change_name(condition), change(*ends)
-
-    def tested(self, contrasts: Iterator[tuple[str, Contrast]]) -> dict[str, Contrast]:
-        """Return contrasts by name, each with its test."""
-        return {name: with_test(contrast) for name, contrast in contrasts}
+        self,
+        tested: Sequence[str],
+        success: Mapping[str, Outcomes],
+        alone: Mapping[str, Outcomes] | None = None,
+    ) -> dict[str, Contrast]:
+        """Return the effects under the `tested` conditions, and their changes from the isolated to
+        the shared one, by name. Changes begin at the outcomes `alone` where these are given."""
+        alone = success if alone is None else alone
+        contrasts = {effect_name(name): self.effect(*success[name]) for name in tested}
+        for name in isolated(tested):
+            if ends := self.together(alone[name], success[SHARED]):
+                contrasts[change_name(name)] = with_test(change(*ends))
+        return contrasts
 
 
 def default_primary(primary: str, conditions: Collection[str]) -> str:
@@ -92,9 +98,7 @@ def change_name(condition: str) -> str:
 
 
 def isolated(tested: Collection[str]) -> list[str]:
-    """Return the conditions of which the change to the shared one is tested."""
-    return (
-        [condition for condition in tested if condition not in (CORRECT, SHARED)]
-        if SHARED in tested
-        else []
-    )
+    """Return the conditions of a fault at one module, which the shared one is compared with."""
+    if SHARED not in tested:
+        return []
+    return [condition for condition in tested if condition not in (CORRECT, SHARED)]

@@ -80,10 +80,7 @@ def decide(
     record = DecisionRecord(
         question=question,
         facts=facts,
-        conditions=tuple(
-            condition.model_copy(update={"acted": condition.name not in untested})
-            for condition in conditions
-        ),
+        conditions=tuple(conditions),
         cells=cells,
         effects=tuple(effects.values()),
         changes=tuple(_change(condition, family) for condition in family.changes),
@@ -144,8 +141,8 @@ def _effect(
     unpaired = np.isnan(repair - baseline)
     rates = [percent(np.where(unpaired, np.nan, part)) for part in (baseline, repair)]
     void, missing = int(pairs.void.sum()), None
-    if condition in family.fills:
-        against, favour = family.fills[condition]
+    if condition in family.missing.bounds:
+        against, favour = family.missing.bounds[condition]
         repair_failed, baseline_failed = (
             int(failed.sum()) for failed in pairs.ended(Status.FAILED)
         )
@@ -156,8 +153,8 @@ def _effect(
             against_pp=against.value,
             favour_pp=favour.value,
             uneven=condition in family.uneven,
-            unsettled=effect_name(condition) in family.unsettled,
-            repairs=family.repairs.get(condition),
+            unsettled=effect_name(condition) in family.missing.unsettled,
+            reruns=family.missing.reruns.get(condition),
         )
     elif void:
         missing = Missing(void=void)
@@ -182,7 +179,7 @@ def _change(condition: str, family: TestedContrasts) -> Change:
     return Change(
         isolated=condition,
         **_difference(contrast),
-        unsettled=change_name(condition) in family.unsettled,
+        unsettled=change_name(condition) in family.missing.unsettled,
         turn=family.turns[condition],
     )
 

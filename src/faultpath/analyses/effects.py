@@ -33,7 +33,7 @@ class Missing(Result):
     """Whether one version failed more often than chance explains: no headline rests on it."""
     unsettled: bool = False
     """Whether the trials that ran decide for a version, and those that failed could undo that."""
-    repairs: tuple[int, int] | None = None
+    reruns: tuple[int, int] | None = None
     """Where they could: how many failed trials of the repair and of the baseline have to run to
     settle it, if they come out as the others did."""
 

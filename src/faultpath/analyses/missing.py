@@ -1,21 +1,20 @@
 """Bounds that trials without an outcome leave: each could have ended either way."""
 
-from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 import numpy as np
 
 from faultpath.analyses.compared import Outcomes, paired_scenes
-from faultpath.analyses.contrasts import Measure
+from faultpath.analyses.contrasts import Design, effect_name
 from faultpath.run.pairing import Bools
 from faultpath.stats.contrast import Contrast
-from faultpath.stats.decisions import with_test
 from faultpath.stats.distributions import sign_p_value
 from faultpath.stats.estimate import ALPHA, PairedTest
 
-Decide: TypeAlias = Callable[[Mapping[str, Contrast]], dict[str, Contrast]]
-"""The joint decision of tested contrasts, by name."""
+Correct: TypeAlias = Callable[[Mapping[str, Contrast]], dict[str, Contrast]]
+"""Corrects the tests of contrasts, by name, for their number."""
 
 
 def filled(success: Outcomes, favour: bool) -> Outcomes:
@@ -24,76 +23,122 @@ def filled(success: Outcomes, favour: bool) -> Outcomes:
     return np.nan_to_num(repair, nan=float(favour)), np.nan_to_num(baseline, nan=1.0 - favour)
 
 
-def any_missing(success: Mapping[str, Outcomes]) -> bool:
-    """Return whether a trial under any condition has no outcome."""
-    return any(np.isnan(part).any() for pair in success.values() for part in pair)
-
-
-def uneven(success: Outcomes) -> bool:
+def failed_unevenly(success: Outcomes) -> bool:
     """Return whether one version failed more often than chance explains."""
     repair, baseline = map(np.isnan, success)
     alone = int((repair & ~baseline).sum()), int((baseline & ~repair).sum())
     return sign_p_value(*alone) <= ALPHA
 
 
-def nearest_to_nothing(
-    measure: Measure,
-    low: Mapping[str, Outcomes],
-    high: Mapping[str, Outcomes],
+@dataclass(frozen=True)
+class MissingOutcomes:
+    """What trials without an outcome leave open, whichever way they would have ended."""
+
+    bounds: Mapping[str, tuple[Contrast, Contrast]] = field(
+        default_factory=dict[str, tuple[Contrast, Contrast]]
+    )
+    """By condition, where any trial is missing: the effect with all missing ones against the
+    repair, and for it."""
+    unsettled: tuple[str, ...] = ()
+    """Contrasts, by name, that would be significant but for those trials."""
+    reruns: Mapping[str, tuple[int, int]] = field(default_factory=dict[str, tuple[int, int]])
+    """By condition with an unsettled effect: how many failed trials of the repair and of the
+    baseline have to run to settle it, if they come out as the others did."""
+
+
+def missing_outcomes(
+    design: Design,
     tested: Sequence[str],
-    names: Collection[str],
+    success: Mapping[str, Outcomes],
+    corrected: Mapping[str, Contrast],
+    correct: Correct,
+) -> MissingOutcomes:
+    """Return what missing trials leave open of contrasts that are `corrected` without them."""
+    if not any(np.isnan(part).any() for pair in success.values() for part in pair):
+        return MissingOutcomes()
+    low = {condition: filled(pair, favour=False) for condition, pair in success.items()}
+    high = {condition: filled(pair, favour=True) for condition, pair in success.items()}
+    nearest = nearest_to_nothing(
+        design.contrasts(tested, low, alone=high), design.contrasts(tested, high, alone=low)
+    )
+    worst_case = correct({name: nearest[name] for name in corrected})
+    unsettled = [
+        name
+        for name, contrast in corrected.items()
+        if contrast.sign not in (0, worst_case[name].sign)
+    ]
+    return MissingOutcomes(
+        bounds={
+            condition: (design.untested(*low[condition]), design.untested(*high[condition]))
+            for condition in success
+        },
+        unsettled=tuple(unsettled),
+        reruns={
+            condition: reruns_needed(
+                corrected, effect_name(condition), success[condition], design, correct
+            )
+            for condition in tested
+            if effect_name(condition) in unsettled
+        },
+    )
+
+
+def nearest_to_nothing(
+    lowest: Mapping[str, Contrast], highest: Mapping[str, Contrast]
 ) -> dict[str, Contrast]:
-    """Return the tested contrasts, each as near to no difference as missing outcomes allow, from
-    successes with these against the repair and for it."""
-    least: dict[str, Contrast] = {}
-    lowest = measure.tested(measure.contrasts(low, high, tested))
-    highest = measure.tested(measure.contrasts(high, low, tested))
-    for name in names:
-        one, two = lowest[name], highest[name]
-        assert one.test is not None
-        assert two.test is not None
-        if one.test.leans <= 0:
-            nothing = replace(one, test=PairedTest(one.test.name, 1.0, 0))
-            one = two if two.test.leans < 0 else nothing
-        least[name] = one
-    return least
+    """Return contrasts as near to no difference as missing outcomes allow: those with all missing
+    outcomes against the repair where they are still for it, and likewise."""
+    nearest: dict[str, Contrast] = {}
+    for name, low in lowest.items():
+        high = highest[name]
+        assert low.test is not None
+        assert high.test is not None
+        if low.test.leans > 0:
+            nearest[name] = low
+        elif high.test.leans < 0:
+            nearest[name] = high
+        else:  # no difference is possible
+            nearest[name] = replace(low, test=PairedTest(low.test.name, 1.0, 0))
+    return nearest
 
 
-def repairs_needed(
-    decided: Mapping[str, Contrast],
+def reruns_needed(
+    corrected: Mapping[str, Contrast],
     name: str,
     success: Outcomes,
-    measure: Measure,
-    decide: Decide,
+    design: Design,
+    correct: Correct,
 ) -> tuple[int, int]:
     """Return how many failed trials of the repair and of the baseline have to run before those that
     are still missing cannot undo an effect, if they come out as the others did: first those of the
     version that alone failed more often, then the others, pair by pair."""
-    sign = decided[name].sign
+    sign = corrected[name].sign
     adverse = filled(success, favour=sign < 0)
-    lost = np.stack([np.isnan(part) for part in success])
-    alone = lost & ~lost[::-1]
-    rank = np.where(alone[alone.sum(axis=(1, 2)).argmax()], 0, np.where(lost.all(axis=0), 1, 2))
-    places = sorted(map(tuple, np.argwhere(lost.any(axis=0))), key=lambda place: rank[place])
+    missing = np.stack([np.isnan(part) for part in success])
+    one_alone = missing & ~missing[::-1]
+    more_often = one_alone[one_alone.sum(axis=(1, 2)).argmax()]
+    rank = np.where(more_often, 0, np.where(missing.all(axis=0), 1, 2))
+    pairs = sorted(map(tuple, np.argwhere(missing.any(axis=0))), key=lambda pair: rank[pair])
 
-    def ran(some: int) -> Bools:
-        chosen = np.zeros(lost.shape[1:], dtype=np.bool_)
-        for place in places[:some]:
-            chosen[place] = True
+    def rerun(count: int) -> Bools:
+        """Return `[scenes, seeds]` whether a pair is among the first `count`."""
+        chosen = np.zeros(missing.shape[1:], dtype=np.bool_)
+        for pair in pairs[:count]:
+            chosen[pair] = True
         return chosen
 
-    def holds_with(some: int) -> bool:
+    def holds_with(count: int) -> bool:
         """Return whether the effect holds, evenly, where the first of the failed pairs ran."""
-        left = [np.where(ran(some), np.nan, part) for part in adverse]
-        still = [np.where(part & ~ran(some), np.nan, 0.0) for part in lost]
-        if not paired_scenes(*left).any() or uneven((still[0], still[1])):
+        left = [np.where(rerun(count), np.nan, part) for part in adverse]
+        still = [np.where(part & ~rerun(count), np.nan, 0.0) for part in missing]
+        if not paired_scenes(*left).any() or failed_unevenly((still[0], still[1])):
             return False
-        contrast = with_test(measure.effect(*left))
-        return decide({**decided, name: contrast})[name].sign == sign
+        return correct({**corrected, name: design.effect(*left)})[name].sign == sign
 
-    low, high = 0, len(places)
+    # Bisection, since each further pair that ran leaves less to be set against the effect.
+    low, high = 0, len(pairs)
     while high - low > 1:
         middle = (low + high) // 2
         low, high = (low, middle) if holds_with(middle) else (middle, high)
-    repair, baseline = (int((part & ran(high)).sum()) for part in lost)
+    repair, baseline = (int((part & rerun(high)).sum()) for part in missing)
     return repair, baseline

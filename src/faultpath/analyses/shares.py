@@ -20,12 +20,13 @@ def between(
     """
     tests = [family.effects[end.condition].test for end in (none, every)]
     level = 1.0 - min(test.critical_p for test in tests if test and test.critical_p is not None)
-    tested = family.measure.together(
+    tested = family.design.together(
         comparison.success[none.condition], comparison.success[every.condition]
     )
     if tested is None:
         return None
-    filled = [family.fills[e.condition] for e in (none, every) if e.condition in family.fills]
+    bounds = family.missing.bounds
+    filled = [bounds[end.condition] for end in (none, every) if end.condition in bounds]
     # Both ends with what failed trials leave open against the repair, and for it.
     fills = tuple(zip(*filled, strict=True)) if any(a.value != b.value for a, b in filled) else ()
     result = break_even(*tested, level=level, fills=fills)

@@ -42,7 +42,7 @@ def stopped(
             continue
         level, margin = 1.0 - critical, question.margin_pp or 0.0
         # Whatever failed trials would have been.
-        filled = (effect, *family.fills.get(condition, ()))
+        filled = (effect, *family.missing.bounds.get(condition, ()))
         ends = [contrast.ends(level) or (-100.0, 100.0) for contrast in filled]
         if all(-margin < low and high < margin for low, high in ends):
             small.append(condition)

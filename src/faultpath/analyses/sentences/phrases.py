@@ -138,9 +138,9 @@ def _ran(record: AuditResult, effect: Effect) -> str:
         f"({with_interval(effect)} pp, {adjusted(record, effect)}), which holds if failing "
         "has nothing to do with how a trial would have ended"
     )
-    if missing.repairs is None:
+    if missing.reruns is None:
         return f"{text}."
-    of = zip(missing.repairs, (question.repair, question.baseline), strict=True)
+    of = zip(missing.reruns, (question.repair, question.baseline), strict=True)
     needed = series([f"{count} of {name}" for count, name in of if count])
     how = (
         "add their outcomes to the results"
