@@ -9,8 +9,8 @@ from typing import TypeVar
 import numpy as np
 from pydantic import BaseModel
 
+from faultpath.analyses.audit import faulted_taps
 from faultpath.analyses.model import SHARED
-from faultpath.analyses.planning import faulted_taps
 from faultpath.analyses.record import DecisionRecord
 from faultpath.core.errors import UserError
 from faultpath.core.files.parquet import Unreadable
