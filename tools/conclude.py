@@ -12,9 +12,9 @@ from faultpath_paper.run import CONCLUSIONS, read_results
 from paper_blocks import PLACE, RUN
 
 from faultpath.analyses.decide import decide
+from faultpath.analyses.map.analysis import map_analysis
 from faultpath.analyses.map.lattice import UNITS
 from faultpath.analyses.map.record import MapRecord
-from faultpath.analyses.map.study import plan_map
 from faultpath.analyses.record import DecisionRecord
 from faultpath.analyses.scan.decide import concluded
 from faultpath.analyses.scan.errors import Scanned
@@ -77,14 +77,14 @@ def reversal_map(folder: Path) -> MapRecord:
     place = str(ROOT / facts.system) if ".py:" in facts.system else facts.system
     spec = SystemSpec(name=place, options=question.options)
     system = load_system(spec)
-    plan = plan_map(system, spec, question, library_of(system, facts.library))
+    analysis = map_analysis(system, spec, question, library_of(system, facts.library))
     points = [
         (round(x / facts.up_to * UNITS), round(y / facts.up_to * UNITS))
         for x, y in (point.errors for point in before.points)
     ]
     findings = Deliveries(rows=(), findings=before.findings)
-    plan = replace(plan, facts=facts)
-    record = plan.conclude(read_outcomes(folder / OUTCOMES), findings, points)
+    analysis = replace(analysis, facts=facts)
+    record = analysis.conclude(read_outcomes(folder / OUTCOMES), findings, points)
     (folder / MAP).write_text(record.model_dump_json(indent=1) + "\n", "utf-8")
     (folder / "table.md").write_text(table_markdown(record), "utf-8")
     _reseal(folder)

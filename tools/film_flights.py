@@ -58,10 +58,10 @@ def flown(scene: str, seed: int) -> Flights:
     before = outcomes_at(read_outcomes(REFERENCE / RUN / OUTCOMES))
     if (scene, seed) not in {(at.scene, at.seed) for at in before}:
         raise Wrong(f"{RUN} has no scene {scene} with seed {seed}: choose another one")
-    system, study = planned(run)
+    system, plan = planned(run)
     flights: list[Flight] = []
     winds: dict[TrialAddress, list[tuple[int, int]]] = {}
-    for row in study.rows:
+    for row in plan.rows:
         if row.condition not in SHOWN or row.seed != seed:
             continue
         at = TrialAddress(row.variant, row.condition, seed, scene)

@@ -12,15 +12,15 @@ from contextlib import chdir, suppress
 
 from blocks import OUTCOMES, REFERENCE, REPEATS, ROOT, Repeats, Run
 
+from faultpath.analyses.audit import audit_analysis
+from faultpath.analyses.map.analysis import map_analysis
 from faultpath.analyses.map.lattice import UNITS
 from faultpath.analyses.map.record import MapRecord
-from faultpath.analyses.map.study import plan_map
-from faultpath.analyses.planning import plan_audit
 from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.scan.design import ScanPlan, plan_scan
+from faultpath.analyses.scan.analysis import ScanAnalysis, scan_analysis
 from faultpath.analyses.scan.record import ScanRecord
 from faultpath.api.replaying import outcomes_at
-from faultpath.run import Study, SystemSpec, Treatment, Trials, load_system
+from faultpath.run import Plan, SystemSpec, Treatment, Trials, load_system
 from faultpath.run.attempt import Done, attempt
 from faultpath.run.store.folder import read_outcomes
 from faultpath.run.store.tables import TrialAddress
@@ -39,10 +39,10 @@ def repeat(run: Run) -> Repeats:
     trials = read_outcomes(REFERENCE / run.name / OUTCOMES)
     before = outcomes_at(trials)
     with chdir(ROOT):
-        system, study = planned(run)
+        system, plan = planned(run)
         treatments: dict[str, Treatment] = {}
         at: dict[str, list[TrialAddress]] = {}
-        for address, treatment in sample(run, study, before):
+        for address, treatment in sample(run, plan, before):
             treatments[treatment.key()] = treatment
             at.setdefault(treatment.key(), []).append(address)
         tolerant = run.record.facts.system != "quadrotor"
@@ -62,39 +62,39 @@ def repeat(run: Run) -> Repeats:
     return Repeats(trials=len(trials), sampled=count, repeated=repeated, near=near, first=first)
 
 
-def planned(run: Run) -> tuple[System, Study]:
+def planned(run: Run) -> tuple[System, Plan]:
     """Return system and trials of a stored audit, map or scan, as the code here plans them."""
     question, facts = run.record.question, run.record.facts
     spec = SystemSpec(name=facts.system, options=question.options)
     system = load_system(spec)
     library = library_of(system, facts.library)
     if isinstance(run.record, ScanRecord):
-        plan = plan_scan(system, spec, question, library, known=run.record.ranking)
-        return system, study_of(plan, read_outcomes(REFERENCE / run.name / OUTCOMES))
+        analysis = scan_analysis(system, spec, question, library, known=run.record.ranking)
+        return system, plan_of(analysis, read_outcomes(REFERENCE / run.name / OUTCOMES))
     if not isinstance(run.record, MapRecord):
-        return system, plan_audit(system, spec, question, library).study
+        return system, audit_analysis(system, spec, question, library).plan
     points = [
         (round(one / facts.up_to * UNITS), round(other / facts.up_to * UNITS))
         for one, other in (point.errors for point in run.record.points)
     ]
-    return system, plan_map(system, spec, question, library).study(points)
+    return system, map_analysis(system, spec, question, library).plan(points)
 
 
-def study_of(plan: ScanPlan, trials: Trials) -> Study:
-    """Return the study of the last round of a scan, whose choices follow from its trials."""
-    rounds = plan.rounds()
-    study = next(rounds).study
+def plan_of(analysis: ScanAnalysis, trials: Trials) -> Plan:
+    """Return the plan of the last round of a scan, whose choices follow from its trials."""
+    rounds = analysis.rounds()
+    plan = next(rounds).plan
     with suppress(StopIteration):
         while True:
-            study = rounds.send(trials).study
-    return study
+            plan = rounds.send(trials).plan
+    return plan
 
 
 def sample(
-    run: Run, study: Study, before: dict[TrialAddress, Outcome]
+    run: Run, plan: Plan, before: dict[TrialAddress, Outcome]
 ) -> Sequence[tuple[TrialAddress, Treatment]]:
     """Return the trials to repeat, always the same of the same run."""
-    treatments = {(row.variant, row.condition, row.seed): row.treatment for row in study.rows}
+    treatments = {(row.variant, row.condition, row.seed): row.treatment for row in plan.rows}
     conditions = sorted({condition for _, condition, _ in treatments}, key=_hash_order)
     if not isinstance(run.record, DecisionRecord):
         conditions = conditions[:_CONDITIONS]

@@ -18,7 +18,7 @@ from pathlib import Path
 from carry_design import VOID, Cell, Design, Flown, Levels, Round
 from carry_verdicts import sentences, settled
 
-from faultpath.analyses.planning import plan_audit
+from faultpath.analyses.audit import audit_analysis
 from faultpath.analyses.sentences.wording import counted
 from faultpath.api.display import Display, SafeConsole
 from faultpath.api.systems import executor_of
@@ -26,14 +26,14 @@ from faultpath.core.errors import Stopped, UserError
 from faultpath.core.files.atomic import make_folder, write_text
 from faultpath.run import (
     Group,
+    Plan,
     Row,
-    Study,
     SystemSpec,
     load_system,
     pair,
 )
 from faultpath.run.execution.provenance import run_provenance
-from faultpath.run.execution.runner import RunResult, run_study
+from faultpath.run.execution.runner import RunResult, run_plan
 from faultpath.run.question import AuditQuestion
 from faultpath.run.work.executor import Executor, Progress
 from faultpath.system import Status, library_of
@@ -82,10 +82,10 @@ class Flight:
                 seeds=(design.seed,),
                 stop_when="decided",
             )
-            audit = plan_audit(self.system, self.spec, request, library)
-            self.scenes = audit.study.scenes
+            audit = audit_analysis(self.system, self.spec, request, library)
+            self.scenes = audit.plan.scenes
             for reach, condition in (("isolated", question.isolated), ("shared", "shared")):
-                rows = [row for row in audit.study.rows if row.condition == condition]
+                rows = [row for row in audit.plan.rows if row.condition == condition]
                 named = [
                     row.model_copy(update={"condition": f"{fault} {condition}"}) for row in rows
                 ]
@@ -113,7 +113,7 @@ class Flight:
         place = folder / "flights" / self.name.replace(", ", "_").replace(" ", "-")
         for scenes in range(design.first, design.most + 1, design.look):
             rows = {(row.variant, row.condition): row for at in waiting for row in self.rows[at]}
-            study = Study(
+            plan = Plan(
                 name=self.name,
                 system=self.spec,
                 library=design.library,
@@ -123,7 +123,7 @@ class Flight:
             )
             began, first = time.monotonic(), scenes == design.first
             shared = {"shared": True, "executor": executor, "recheck": first}
-            result = run_study(study, place, system=self.system, **shared, **how)
+            result = run_plan(plan, place, system=self.system, **shared, **how)
             if blocks := result.blocks_computed:
                 rounds.append(
                     Round(
@@ -134,7 +134,7 @@ class Flight:
                     )
                 )
             for at in waiting:
-                self.cells[at] = _ended(self.cells[at], self.rows[at], result, study.scenes)
+                self.cells[at] = _ended(self.cells[at], self.rows[at], result, plan.scenes)
             left = design.most - scenes
             waiting = [at for at in waiting if not settled(design, self.cells[at], left)]
             if not waiting:

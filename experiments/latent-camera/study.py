@@ -19,15 +19,15 @@ from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.faults import at_readers
 from faultpath.run import (
     Group,
+    Plan,
     Row,
-    Study,
     SystemSpec,
     Treatment,
     Trials,
     load_system,
     pair,
 )
-from faultpath.run.execution.runner import run_study
+from faultpath.run.execution.runner import run_plan
 from faultpath.system import Status
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -63,7 +63,7 @@ def _frozen(value):
     return tuple(value) if isinstance(value, list) else value
 
 
-def study(design: Design, repair: str, library: str, scenes: tuple[str, ...]) -> Study:
+def plan_of(design: Design, repair: str, library: str, scenes: tuple[str, ...]) -> Plan:
     """Return the treatments of the baseline and one repair under every fault."""
     system, rows = load_system(design.spec), []
     for seed in design.seeds:
@@ -79,7 +79,7 @@ def study(design: Design, repair: str, library: str, scenes: tuple[str, ...]) ->
                 rows.append(
                     Row(variant=variant, condition=condition, seed=seed, treatment=treatment)
                 )
-    return Study(
+    return Plan(
         name="latent-camera",
         system=design.spec,
         library=library,
@@ -151,8 +151,8 @@ def main() -> None:
     stem = f"{asked.design.stem}-{asked.library}"
     audits, baseline = [], []
     for repair in repairs:
-        result = run_study(
-            study(design, repair, asked.library, scenes),
+        result = run_plan(
+            plan_of(design, repair, asked.library, scenes),
             asked.out / stem,
             asked.workers,
             lambda now: print(f"\r{now.done:g}/{now.total:g}", end="", flush=True),

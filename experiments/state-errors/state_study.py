@@ -29,9 +29,9 @@ from faultpath.core.errors import Stopped, UserError
 from faultpath.core.files.atomic import make_folder, write, write_text
 from faultpath.faults import Address, at_readers, encode_record
 from faultpath.faults.recorded import decode_record
-from faultpath.run import Row, Study, Treatment, Trials, load_system
+from faultpath.run import Plan, Row, Treatment, Trials, load_system
 from faultpath.run.execution.provenance import run_provenance
-from faultpath.run.execution.runner import run_study
+from faultpath.run.execution.runner import run_plan
 from faultpath.system import library_of
 
 HERE = Path(__file__).resolve().parent
@@ -89,7 +89,7 @@ def joined(parts: Sequence[Path]) -> bytes:
     return encode_record(errors, TURNING)
 
 
-def study_of(design: Design, system, scenes: Sequence[str], files: Files) -> Study:
+def plan_of(design: Design, system, scenes: Sequence[str], files: Files) -> Plan:
     """Return all that flies: without a fault, with it shared, and with its errors at one module."""
     rows: dict[tuple[str, str], Row] = {}
     for fault, filters in design.variants.items():
@@ -104,7 +104,7 @@ def study_of(design: Design, system, scenes: Sequence[str], files: Files) -> Stu
                 rows[variant, condition] = Row(
                     variant=variant, condition=condition, seed=design.seed, treatment=treatment
                 )
-    return Study(
+    return Plan(
         name="state-errors",
         system=design.spec,
         library=design.library,
@@ -174,11 +174,11 @@ def fly(
     make_folder(folder)
     make_folder(folder / "errors")
     files = recorded(design, chosen, folder / "errors", workers, show)
-    study = study_of(design, system, chosen, files)
-    show.say(f"{len(study.treatments()) * len(chosen)} trials.")
+    plan = plan_of(design, system, chosen, files)
+    show.say(f"{len(plan.treatments()) * len(chosen)} trials.")
     with executor_of(system, workers) as force, show.progress("Flying") as move:
-        result = run_study(
-            study, folder / "run", progress=move, notice=show.say, system=system, executor=force
+        result = run_plan(
+            plan, folder / "run", progress=move, notice=show.say, system=system, executor=force
         )
     for finding in result.findings:
         show.say(finding)

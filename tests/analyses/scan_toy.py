@@ -8,11 +8,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from faultpath.analyses.scan.design import Scanned, ScanPlan, plan_scan
+from faultpath.analyses.scan.analysis import ScanAnalysis, Scanned, scan_analysis
 from faultpath.analyses.scan.record import ScanRecord
 from faultpath.interface import Channel, Interface, Provenance, Source, Uncertainty
 from faultpath.loop import Taps
-from faultpath.run import Deliveries, Study, SystemSpec, Trials
+from faultpath.run import Deliveries, Plan, SystemSpec, Trials
 from faultpath.run.question import ScanQuestion, ask
 from faultpath.run.trials import Trial
 from faultpath.system import Library, SceneRef, System, Variant
@@ -67,10 +67,10 @@ def difficulty(scene: str) -> float:
     return (int(scene[1:]) * 0.6180339887498949) % 1.0
 
 
-def trials_of(system: Planted, study: Study) -> Trials:
-    """Return the trials of a study, each from what its faults cost; `deaf` reads no error."""
+def trials_of(system: Planted, plan: Plan) -> Trials:
+    """Return the trials of a plan, each from what its faults cost; `deaf` reads no error."""
     trials: list[Trial] = []
-    for row in study.rows:
+    for row in plan.rows:
         at = {
             reader: float(fault.intervention.by)  # pyright: ignore - an offset
             for fault in row.treatment.faults
@@ -90,22 +90,22 @@ def trials_of(system: Planted, study: Study) -> Trials:
     return Trials.of(trials)
 
 
-def planned(system: Planted, **arguments: Any) -> ScanPlan:
+def planned(system: Planted, **arguments: Any) -> ScanAnalysis:
     question = ask(ScanQuestion, {"variant": "whole", **arguments})
-    return plan_scan(system, SystemSpec(name="planted"), question, system.library("selection"))
+    return scan_analysis(system, SystemSpec(name="planted"), question, system.library("selection"))
 
 
-def scanned(system: Planted, **arguments: Any) -> tuple[ScanRecord, Scanned, list[Study]]:
-    """Run the rounds of a scan; return its result, what ran, and the study of each round."""
-    plan = planned(system, **arguments)
-    rounds = plan.rounds()
-    studies = [next(rounds).study]
+def scanned(system: Planted, **arguments: Any) -> tuple[ScanRecord, Scanned, list[Plan]]:
+    """Run the rounds of a scan; return its result, what ran, and the plan of each round."""
+    analysis = planned(system, **arguments)
+    rounds = analysis.rounds()
+    plans = [next(rounds).plan]
     while True:
-        trials = trials_of(system, studies[-1])
+        trials = trials_of(system, plans[-1])
         try:
-            studies.append(rounds.send(trials).study)
+            plans.append(rounds.send(trials).plan)
         except StopIteration as end:
-            return plan.conclude(trials, Deliveries(rows=()), end.value), end.value, studies
+            return analysis.conclude(trials, Deliveries(rows=()), end.value), end.value, plans
 
 
 def names(record: ScanRecord, places: Sequence[int]) -> set[str]:

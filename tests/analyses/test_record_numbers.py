@@ -39,14 +39,14 @@ def test_counts_make_the_effect_and_the_p_value(counts):
 
 def test_cells_count_every_trial():
     made = record({CORRECT: (40, 20, 5), "observer": (10, 0, 30)})
-    cells = {(cell.variant, cell.condition): cell for cell in made.cells}
+    cells = {(cell.variant, cell.condition): cell for cell in made.counts}
     assert {at: cell.success for at, cell in cells.items()} == {
         (REPAIR, CORRECT): 60,
         (BASELINE, CORRECT): 45,
         (REPAIR, "observer"): 10,
         (BASELINE, "observer"): 40,
     }
-    for cell in made.cells:
+    for cell in made.counts:
         assert cell.success + cell.crash == cell.trials == 100
         assert cell.faulted_trials == (0 if cell.condition == CORRECT else 100)
         altered = cell.condition != CORRECT and cell.variant == REPAIR
@@ -108,7 +108,7 @@ def test_a_failed_trial_costs_its_pair_and_shows_and_costs_other_conditions_noth
     assert observer.won[0][1] == 29
     assert observer.value == pytest.approx(100 * (10 - 29) / 99)
     assert correct.mcnemar_p == pytest.approx(exact_p(20, 10))
-    cells = {(cell.variant, cell.condition): cell for cell in made.cells}
+    cells = {(cell.variant, cell.condition): cell for cell in made.counts}
     assert cells[REPAIR, "observer"].failed == 1
     assert cells[REPAIR, "observer"].trials == 100
     assert cells[REPAIR, "observer"].success_percent == pytest.approx(100 * 30 / 99)

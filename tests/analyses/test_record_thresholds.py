@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 from outcome_tables import conditions, facts, question, record, table
 
+from faultpath.analyses.audit import audit_analysis
 from faultpath.analyses.decide import decide
-from faultpath.analyses.planning import plan_audit
 from faultpath.core.errors import UserError
 from faultpath.run import SystemSpec, Trials, load_system
 from faultpath.run.question import AuditQuestion, ask
@@ -68,4 +68,4 @@ def test_what_the_system_does_not_measure_is_refused(asked, said, monkeypatch, r
     system = load_system(TOY)
     variants = {"baseline": "calibrated", "repair": "blind", "fault": "gain:scale=0.6"}
     with pytest.raises(UserError, match=said):
-        plan_audit(system, TOY, ask(AuditQuestion, variants | asked), system.library("carts"))
+        audit_analysis(system, TOY, ask(AuditQuestion, variants | asked), system.library("carts"))

@@ -8,7 +8,7 @@ import pytest
 import yaml
 from scan_toy import Cost, Planted, names, planned, scanned
 
-from faultpath.analyses.scan.design import COSTLY_PP, FIRST_SCENES, HALVINGS, TRIALS
+from faultpath.analyses.scan.analysis import COSTLY_PP, FIRST_SCENES, HALVINGS, TRIALS
 from faultpath.analyses.scan.ranking import PROBED_SCENES
 from faultpath.analyses.scan.record import ScanRecord
 from faultpath.core.errors import UserError
@@ -90,14 +90,14 @@ def test_each_stage_has_scenes_of_its_own_and_all_conditions_of_it():
         return 0.3 * min(1.0, sum(abs(size) > 0 for size in at.values()))
 
     system = Planted(cost, ("a", "three"))
-    record, scan, studies = scanned(system)
+    record, scan, plans = scanned(system)
     first, second = set(scan.first), set(scan.second)
     assert len(first) == 50
     assert not first & second
-    ran = {row.condition: set(row.scenes) for row in studies[0].rows}
+    ran = {row.condition: set(row.scenes) for row in plans[0].rows}
     assert len(ran) == 1 + 2 * 4
     assert set.union(*ran.values()) == first
-    later = {row.condition for row in studies[-1].rows if set(row.scenes) == second}
+    later = {row.condition for row in plans[-1].rows if set(row.scenes) == second}
     everywhere = "three:offset=0.4@last & three:offset=0.4@one & three:offset=0.4@two"
     for path in (
         "correct",
@@ -140,8 +140,8 @@ def test_a_size_stays_where_half_of_it_seems_to_cost_nothing():
 
 
 def test_a_costly_size_is_halved_at_all_readers_of_its_source():
-    record, _, studies = scanned(Planted(SAID["costly sizes"][0], ("pair",)))
-    assert [study.rows[0].condition for study in studies] == ["correct"] * 3
+    record, _, plans = scanned(Planted(SAID["costly sizes"][0], ("pair",)))
+    assert [plan.rows[0].condition for plan in plans] == ["correct"] * 3
     sizes = {(error.change, error.halvings) for error in record.errors}
     assert sizes == {((-0.2,), 1), ((0.2,), 1)}
     assert [kind for kind, _ in listed(record)] == ["cancel", "cancel"]

@@ -3,23 +3,23 @@
 import pytest
 from toy_audits import TOY
 
+from faultpath.analyses.audit import AuditAnalysis, audit_analysis
 from faultpath.analyses.model import FaultedTap
-from faultpath.analyses.planning import Audit, plan_audit
 from faultpath.analyses.record import DecisionRecord
 from faultpath.faults import FaultText
 from faultpath.run import SystemSpec, load_system
-from faultpath.run.execution.runner import run_study
+from faultpath.run.execution.runner import run_plan
 from faultpath.run.question import AuditQuestion
 
 STEPS = 100
 
 
-def asked(text: str) -> Audit:
+def asked(text: str) -> AuditAnalysis:
     spec = SystemSpec(name=TOY)
     system = load_system(spec)
     fault = FaultText.read(text)
     question = AuditQuestion(baseline="calibrated", repair="blind", fault=fault, scenes=4)
-    return plan_audit(system, spec, question, system.library("carts"))
+    return audit_analysis(system, spec, question, system.library("carts"))
 
 
 def faulted(record: DecisionRecord) -> dict[str, tuple[tuple[FaultedTap, ...], ...]]:
@@ -45,7 +45,7 @@ def tap(reader: str, faulted_steps: int, altered_steps: int) -> FaultedTap:
 )
 def test_a_path_holds_the_taps_faulted_in_either_variant(tmp_path, text, in_force, altered):
     audit = asked(text)
-    result = run_study(audit.study, tmp_path, workers=0)
+    result = run_plan(audit.plan, tmp_path, workers=0)
     controller = tap("controller.inverse", 4 * in_force, 4 * altered)
     observer = tap("observer.model", 4 * in_force, 4 * altered)
     assert faulted(audit.conclude(result.trials, result.deliveries)) == {
@@ -58,6 +58,6 @@ def test_a_path_holds_the_taps_faulted_in_either_variant(tmp_path, text, in_forc
 
 def test_a_fault_after_the_end_faulted_nothing(tmp_path):
     audit = asked("gain:scale=0.6,onset=100")
-    result = run_study(audit.study, tmp_path, workers=0)
+    result = run_plan(audit.plan, tmp_path, workers=0)
     record = audit.conclude(result.trials, result.deliveries)
     assert set(faulted(record).values()) == {((), ())}

@@ -2,7 +2,7 @@
 
 import pytest
 
-from faultpath.analyses.planning import Audit, plan_audit
+from faultpath.analyses.audit import AuditAnalysis, audit_analysis
 from faultpath.core.errors import UserError
 from faultpath.faults import Fault, FaultText, Scale
 from faultpath.interface import Channel, Interface, Provenance, Source, read_interface
@@ -62,9 +62,9 @@ class Paper(System):
         raise AssertionError("planning runs nothing")
 
 
-def planned(baseline: str, repair: str, text: str, **changes) -> Audit:
+def planned(baseline: str, repair: str, text: str, **changes) -> AuditAnalysis:
     system = Paper()
-    return plan_audit(
+    return audit_analysis(
         system,
         SystemSpec(name="paper"),
         AuditQuestion(baseline=baseline, repair=repair, fault=FaultText.read(text), **changes),
@@ -109,8 +109,8 @@ LAID_OUT = {
 }
 
 
-def _faulted(audit: Audit, variant: str, condition: str) -> set[tuple[str, str]]:
-    (row,) = (r for r in audit.study.rows if (r.variant, r.condition) == (variant, condition))
+def _faulted(audit: AuditAnalysis, variant: str, condition: str) -> set[tuple[str, str]]:
+    (row,) = (r for r in audit.plan.rows if (r.variant, r.condition) == (variant, condition))
     return {(fault.channel, c) for fault in row.treatment.faults for c in fault.readers}
 
 
@@ -128,15 +128,15 @@ def test_each_condition_strikes_the_places_that_it_names_in_either_variant(quest
 
 def test_every_cell_has_a_row_and_treatments_that_are_the_same_run_once():
     audit = planned("plain", "observed", "mass:scale=2", seeds=(0, 7))
-    rows = {(row.variant, row.condition, row.seed): row.treatment for row in audit.study.rows}
-    assert len(rows) == len(audit.study.rows) == 2 * 4 * 2
+    rows = {(row.variant, row.condition, row.seed): row.treatment for row in audit.plan.rows}
+    assert len(rows) == len(audit.plan.rows) == 2 * 4 * 2
     for seed in (0, 7):
         # Without an observer there is nobody to strike: its trials under correct inputs stand in.
         assert rows["plain", "observer", seed] == rows["plain", "correct", seed]
         assert rows["plain", "planner", seed] == rows["plain", "shared", seed]
         assert all(rows[key].seed == seed for key in rows if key[2] == seed)
     keys = {treatment.key() for treatment in rows.values()}
-    assert len(audit.study.treatments()) == len(keys) == 2 * (2 + 4)
+    assert len(audit.plan.treatments()) == len(keys) == 2 * (2 + 4)
 
 
 def test_the_question_says_what_was_asked():
@@ -146,8 +146,8 @@ def test_the_question_says_what_was_asked():
     assert str(question.fault) == "mass:scale=2,onset=3"
     assert (facts.library, facts.library_hash) == ("five", "five-1")
     assert (facts.n_scenes, question.seeds) == (2, (4,))
-    assert audit.study.scenes == ("s0", "s1")
-    faults = [fault for row in audit.study.rows for fault in row.treatment.faults]
+    assert audit.plan.scenes == ("s0", "s1")
+    faults = [fault for row in audit.plan.rows for fault in row.treatment.faults]
     assert faults
     assert all(fault.onset_step == 3 for fault in faults)
 
@@ -168,7 +168,7 @@ def test_questions_that_cannot_be_asked(call, says):
 
 @pytest.mark.parametrize("count", [0, 6])
 def test_scenes_that_the_library_does_not_have(count):
-    assert len(planned("plain", "observed", "mass:scale=2").study.scenes) == 5
+    assert len(planned("plain", "observed", "mass:scale=2").plan.scenes) == 5
     with pytest.raises(UserError, match=f"{count} scenes of library 'five': choose 1 to 5"):
         planned("plain", "observed", "mass:scale=2", scenes=count)
 

@@ -125,7 +125,7 @@ def test_after_an_edit_a_run_starts_anew_beside_the_other(tmp_path):
     assert audit(system=f"{system}:create").status == 0
     (after,) = {*Path("runs").iterdir()} - {before}
     assert (before / "outcomes.parquet").read_bytes() == outcomes
-    assert open_run(after).record.cells != open_run(before).record.cells
+    assert open_run(after).record.counts != open_run(before).record.counts
 
 
 def test_a_failed_trial_is_shown_and_the_status_says_so():

@@ -136,7 +136,7 @@ def test_a_run_does_not_go_on_in_one_of_another_kind(first: str, second: str) ->
     """The variants of a map may be others from round to round, but a map is no audit."""
     assert faultpath(*COMMANDS[first], "--out", "run").status == 0
     before = {path: path.read_bytes() for path in Path("run").iterdir() if path.is_file()}
-    faultpath(*COMMANDS[second], "--out", "run").refused("run of another study")
+    faultpath(*COMMANDS[second], "--out", "run").refused("holds another run")
     assert all(path.read_bytes() == data for path, data in before.items())
 
 

@@ -253,7 +253,7 @@ def of_record(record: Any) -> dict[str, Any]:
     }
     cells = {
         f"{cell['variant']}, {cell['condition']}": [cell[name] for name in _OF_A_CELL]
-        for cell in result["cells"]
+        for cell in result["counts"]
     }
     whole = {name: result[name] for name in ("scenes", "invalid", "stopped")}
     whole["scenes_needed"] = result["testing"]["scenes_needed"]

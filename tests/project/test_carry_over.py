@@ -113,7 +113,7 @@ def test_what_is_stopped_resumes_and_a_variant_of_two_questions_flies_once(tmp_p
     assert len(whole.cells) == 4  # two questions, isolated and shared
     assert whole.trials == sum(each.trials for each in whole.rounds) == 2 * 3 * 2
 
-    run, calls = study.run_study, []
+    run, calls = study.run_plan, []
 
     def interrupted(*given, progress, **how):
         def stop(now):
@@ -124,7 +124,7 @@ def test_what_is_stopped_resumes_and_a_variant_of_two_questions_flies_once(tmp_p
 
         return run(*given, progress=stop, **how)
 
-    monkeypatch.setattr(study, "run_study", interrupted)
+    monkeypatch.setattr(study, "run_plan", interrupted)
     with pytest.raises(Stopped):
         study.fly(asked, tmp_path / "stopped", 0, "local", Display())
     resumed = study.fly(asked, tmp_path / "stopped", 0, "local", Display())

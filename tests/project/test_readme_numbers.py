@@ -10,10 +10,10 @@ from subprocess import CompletedProcess
 import documents
 import pytest
 
-from faultpath.analyses.planning import Audit, plan_audit
+from faultpath.analyses.audit import AuditAnalysis, audit_analysis
 from faultpath.analyses.record import DecisionRecord
 from faultpath.run import SystemSpec, load_system
-from faultpath.run.execution.runner import run_study
+from faultpath.run.execution.runner import run_plan
 from faultpath.run.provenance import RunProvenance
 from faultpath.run.question import AuditQuestion
 from faultpath.run.store.folder import read_outcomes
@@ -49,20 +49,20 @@ def test_no_block_or_picture_is_stale(run: Callable[..., CompletedProcess[str]])
 def test_the_code_that_is_here_gives_the_whole_of_a_quick_reference(name: str, tmp_path) -> None:
     """Run again it is the same to the last bit; of the slow ones `test_repeats` asks a sample."""
     audit = plan(record_of(name))
-    done = run_study(audit.study, tmp_path, workers=0)
+    done = run_plan(audit.plan, tmp_path, workers=0)
     reference = read_outcomes(REFERENCE / name / "outcomes.parquet")
     assert (tmp_path / "outcomes.parquet").read_bytes() == encode_outcomes(reference)
     again = audit.conclude(done.trials, done.deliveries)
     assert numbers(again) == numbers(record_of(name))
 
 
-def plan(record: DecisionRecord) -> Audit:
+def plan(record: DecisionRecord) -> AuditAnalysis:
     question, facts = record.question, record.facts
     assert isinstance(question, AuditQuestion)
     place = facts.system if ".py:" not in facts.system else str(ROOT / facts.system)
     spec = SystemSpec(name=place, options=question.options)
     system = load_system(spec)
-    return plan_audit(system, spec, question, system.library(facts.library))
+    return audit_analysis(system, spec, question, system.library(facts.library))
 
 
 def recipe(target: str, given: str = "") -> list[str]:

@@ -137,13 +137,13 @@ def test_other_conditions_are_blank_and_not_left_out(
     first, second = run(lost, 1), run(one_seed, 2)
     record, moved = second.record, {"condition": "planner"}
     planner = Condition(name="planner", title="Planner only", readers=(), baseline_readers=())
-    copied = [cell for cell in record.cells if cell.condition == record.effects[1].condition]
+    copied = [cell for cell in record.counts if cell.condition == record.effects[1].condition]
     secondary = (*record.secondary, record.secondary[1].model_copy(update=moved))
     update = {
         "secondary": secondary,
         "conditions": (*record.conditions, planner),
         "effects": (*record.effects, record.effects[1].model_copy(update=moved)),
-        "cells": (*record.cells, *(cell.model_copy(update=moved) for cell in copied)),
+        "counts": (*record.counts, *(cell.model_copy(update=moved) for cell in copied)),
     }
     second = decided(second, **update)
     runs = (first, second)
@@ -165,8 +165,8 @@ def test_hostile_names_are_text(one_seed: ReportInput) -> None:
         run(one_seed, 1, NASTY, fault=NASTY, baseline=NASTY),
         run(one_seed, 2, repair=NASTY, options={NASTY: NASTY}, system=NASTY),
     )
-    cells = [cell.model_copy(update={"variant": NASTY}) for cell in runs[0].record.cells]
-    runs = tuple(decided(each, cells=(*each.record.cells, *cells)) for each in runs)
+    counts = [cell.model_copy(update={"variant": NASTY}) for cell in runs[0].record.counts]
+    runs = tuple(decided(each, counts=(*each.record.counts, *counts)) for each in runs)
     text = page(runs)
     assert "<script>alert" not in text
     assert "\u202e" not in text

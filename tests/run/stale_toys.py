@@ -3,9 +3,9 @@
 from itertools import count
 from pathlib import Path
 
-from toy_study import study_of
+from toy_plan import plan_of
 
-from faultpath.run.plan import Study
+from faultpath.run.plan import Plan
 
 _NUMBERS = count()
 _SYSTEM = """
@@ -44,5 +44,5 @@ class Mine:
         self.helper.write_text("PUSH = 0.0\n")
         self.data.write_text("0.0")
 
-    def study(self, **options: str) -> Study:
-        return study_of(f"{self.file}:create", **options)
+    def plan(self, **options: str) -> Plan:
+        return plan_of(f"{self.file}:create", **options)

@@ -11,11 +11,11 @@ import pytest
 from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, precondition, rule
-from toy_study import SCENES, rows, study
+from toy_plan import SCENES, plan, rows
 
 from faultpath.core.errors import Stopped
-from faultpath.run.execution.runner import RunResult, run_study
-from faultpath.run.plan import Study
+from faultpath.run.execution.runner import RunResult, run_plan
+from faultpath.run.plan import Plan
 from faultpath.run.store.folder import RunFolder
 from faultpath.run.work.executor import Progress
 
@@ -28,13 +28,13 @@ SPOILT = {
 }
 
 
-def run(folder: Path, asked: Study, reached: int, **more: Any) -> RunResult:
-    """Run a study; one with looks stops when it has seen as many scenes as `reached`."""
+def run(folder: Path, asked: Plan, reached: int, **more: Any) -> RunResult:
+    """Run a plan; one with looks stops when it has seen as many scenes as `reached`."""
 
     def stop(table) -> bool:
         return len({trial.outcome.scene for trial in table}) >= reached
 
-    return run_study(
+    return run_plan(
         asked,
         folder,
         workers=0,
@@ -44,9 +44,9 @@ def run(folder: Path, asked: Study, reached: int, **more: Any) -> RunResult:
     )
 
 
-def asked(look: int, scenes: tuple[str, ...], gate: Path) -> Study:
-    """Return a study in which one scene fails while the file `gate` exists."""
-    whole = study(scenes, raises="s05", **{"while": str(gate)})
+def asked(look: int, scenes: tuple[str, ...], gate: Path) -> Plan:
+    """Return a plan in which one scene fails while the file `gate` exists."""
+    whole = plan(scenes, raises="s05", **{"while": str(gate)})
     return whole.model_copy(update={"scenes_per_analysis": look, "rows": rows()[::3]})
 
 
@@ -61,7 +61,7 @@ def left_alone(look: int, scenes: tuple[str, ...], reached: int, air: bool) -> l
 
 
 class Disturbed(RuleBasedStateMachine):
-    """A run folder with a study of a fixed number of scenes.
+    """A run folder with a plan of a fixed number of scenes.
 
     A process that is killed leaves what one leaves that is stopped, and at most a part of a file.
     """
@@ -122,8 +122,8 @@ class Disturbed(RuleBasedStateMachine):
         scenes, until = self.chosen(width, reached)
         before, failed = self.shards(), len(list(self.folder.glob("failures/*")))
         air, notices = not self.gate.exists(), list[str]()
-        study = asked(self.look, scenes, self.gate)
-        result = run(self.folder, study, until, notice=notices.append)
+        plan = asked(self.look, scenes, self.gate)
+        result = run(self.folder, plan, until, notice=notices.append)
         tables = [(self.folder / name).read_bytes() for name in TABLES]
         assert tables == left_alone(self.look, scenes, until, air)
         new = len(self.shards().keys() - before.keys())
@@ -138,7 +138,7 @@ class Disturbed(RuleBasedStateMachine):
 
 
 class DisturbedWithLooks(Disturbed):
-    """One with a study that stops at a look."""
+    """One with a plan that stops at a look."""
 
     look, widths, reached = 2, (ORDER[:4], ORDER), (4, 6, 99)
 

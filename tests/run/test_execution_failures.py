@@ -10,14 +10,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from toy_study import SCENES, SYSTEM, UNITS, study, study_of
+from toy_plan import SCENES, SYSTEM, UNITS, plan, plan_of
 from toy_system import STEPS, ToySystem
 
 from faultpath.core.errors import UserError
 from faultpath.loop import Reading
 from faultpath.run.attempt import WrongOutcomes
 from faultpath.run.execution import dispatch
-from faultpath.run.execution.runner import run_study
+from faultpath.run.execution.runner import run_plan
 from faultpath.run.execution.state import FEW
 from faultpath.system import Status
 
@@ -85,25 +85,25 @@ UNRULY = f"{__file__}:unruly"
     [("unruly", SCENES[5:6], {"time_limit_s": 3.0}), ("bounded", SCENES[4:6], {})],
 )
 def test_a_scene_that_takes_too_long_loses_itself_alone(tmp_path, factory, scenes, limits):
-    trials = study_of(f"{__file__}:{factory}", scenes, does="hang", where="s05")
-    (failure,) = run_study(trials, tmp_path, workers=1, **limits).failures
+    trials = plan_of(f"{__file__}:{factory}", scenes, does="hang", where="s05")
+    (failure,) = run_plan(trials, tmp_path, workers=1, **limits).failures
     assert failure.scene == "s05"
     assert "stopped at the time limit of 3 s" in failure.error
 
 
 @pytest.mark.parametrize(("workers", "status"), [(0, "0"), (1, "1")])
 def test_a_system_that_exits_has_failed(tmp_path, workers, status):
-    trials = study_of(UNRULY, SCENES[:8], does="exit", where="s05", status=status)
-    (failure,) = run_study(trials, tmp_path, workers=workers).failures
+    trials = plan_of(UNRULY, SCENES[:8], does="exit", where="s05", status=status)
+    (failure,) = run_plan(trials, tmp_path, workers=workers).failures
     assert failure.scene == "s05"
     assert f"called sys.exit({status})" in failure.error
 
 
 @pytest.mark.parametrize(("workers", "does"), [(0, "exit"), (2, "raise")])
 def test_a_system_that_fails_everywhere_is_stopped_after_a_few(tmp_path, does, workers):
-    trials = study_of(UNRULY, count=12, does=does, status="0")
+    trials = plan_of(UNRULY, count=12, does=does, status="0")
     with pytest.raises(UserError, match=f"all of the first {FEW} trials failed") as caught:
-        run_study(trials, tmp_path / "run", workers=workers)
+        run_plan(trials, tmp_path / "run", workers=workers)
     said = str(caught.value)
     assert ("ValueError: no air anywhere" if does == "raise" else "sys.exit(0)") in said
     assert "\n" not in said
@@ -113,9 +113,9 @@ def test_a_system_that_fails_everywhere_is_stopped_after_a_few(tmp_path, does, w
 
 def test_a_system_that_is_never_built_in_a_worker_is_not_waited_for(tmp_path, monkeypatch):
     monkeypatch.setattr(dispatch, "LEAST_S", 1.0)
-    trials = study_of(f"{__file__}:slow_worker", parent=str(os.getpid()))
+    trials = plan_of(f"{__file__}:slow_worker", parent=str(os.getpid()))
     with pytest.raises(UserError, match=r"was not built in a worker process within 2 s: look"):
-        run_study(trials, tmp_path, workers=1, time_limit_s=2.0)
+        run_plan(trials, tmp_path, workers=1, time_limit_s=2.0)
 
 
 @pytest.mark.parametrize(
@@ -123,34 +123,34 @@ def test_a_system_that_is_never_built_in_a_worker_is_not_waited_for(tmp_path, mo
     [("distance", 0), ("status", 0), ("object", 1), ("surrogate", 1), ("error", 1)],
 )
 def test_a_malformed_outcome_fails_its_trial_alone(tmp_path, wrong, workers):
-    trials = study_of(UNRULY, does=wrong, where="s05")
-    result = run_study(trials, tmp_path, workers=workers)
+    trials = plan_of(UNRULY, does=wrong, where="s05")
+    result = run_plan(trials, tmp_path, workers=workers)
     statuses = {row.outcome.scene: row.outcome.status for row in result.trials}
     assert [scene for scene in SCENES if statuses[scene] is Status.FAILED] == ["s05"]
     (failure,) = result.failures
     assert failure.error
     assert failure.error in failure.details.read_text()
-    assert run_study(trials, tmp_path, workers=0).outcomes_sha256 == result.outcomes_sha256
+    assert run_plan(trials, tmp_path, workers=0).outcomes_sha256 == result.outcomes_sha256
 
 
 @pytest.mark.parametrize(
     ("wrong", "said", "workers"),
     [("nothing", "a NoneType", 1), ("dict", "a dict in place of", 0), ("order", "in order", 0)],
 )
-def test_no_outcomes_at_all_stop_the_study(tmp_path, wrong, said, workers):
+def test_no_outcomes_at_all_stop_the_run(tmp_path, wrong, said, workers):
     with pytest.raises(WrongOutcomes, match=said):
-        run_study(study_of(UNRULY, does=wrong), tmp_path, workers=workers)
+        run_plan(plan_of(UNRULY, does=wrong), tmp_path, workers=workers)
 
 
 def test_a_reading_that_is_no_number_costs_its_scene_alone(tmp_path):
-    trials = study_of(UNRULY, SCENES[4:8], does="lose its mass", where="s05")
-    (failure,) = run_study(trials, tmp_path, workers=0).failures
+    trials = plan_of(UNRULY, SCENES[4:8], does="lose its mass", where="s05")
+    (failure,) = run_plan(trials, tmp_path, workers=0).failures
     assert failure.scene == "s05"
     assert "tap mass -> planner.thrust: the first reading is not finite" in failure.error
 
 
 def test_a_reader_that_writes_is_told_to_copy(tmp_path):
-    result = run_study(study_of(UNRULY, SCENES[4:8], does="write"), tmp_path, workers=0)
+    result = run_plan(plan_of(UNRULY, SCENES[4:8], does="write"), tmp_path, workers=0)
     assert len(result.failures) == 4
     assert "what a tap delivers cannot be written to" in result.failures[0].error
 
@@ -158,13 +158,13 @@ def test_a_reader_that_writes_is_told_to_copy(tmp_path):
 @pytest.fixture(scope="module")
 def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("undisturbed")
-    run_study(study(), folder, workers=0)
+    run_plan(plan(), folder, workers=0)
     return folder
 
 
 def test_a_scene_that_fails_loses_itself_alone(undisturbed, tmp_path):
-    result = run_study(study(raises="s05"), tmp_path, workers=0)
-    sound = run_study(study(), undisturbed, workers=0)
+    result = run_plan(plan(raises="s05"), tmp_path, workers=0)
+    sound = run_plan(plan(), undisturbed, workers=0)
     for row, expected in zip(result.trials, sound.trials, strict=True):
         if row.outcome.scene == "s05":
             assert row.outcome.failed
@@ -173,7 +173,7 @@ def test_a_scene_that_fails_loses_itself_alone(undisturbed, tmp_path):
             assert row.outcome.metrics == expected.outcome.metrics
     (planner,) = result.deliveries.at("plain", "correct")
     assert planner.deliveries == 2 * STEPS * (len(SCENES) - 1)
-    assert len(result.failures) == len(study().treatments())
+    assert len(result.failures) == len(plan().treatments())
     for failure in result.failures:
         assert failure.scene == "s05"
         text = failure.details.read_text()
@@ -183,8 +183,8 @@ def test_a_scene_that_fails_loses_itself_alone(undisturbed, tmp_path):
 
 def test_a_worker_that_dies_once_costs_nothing(undisturbed, tmp_path):
     once, log = tmp_path / "died", tmp_path / "log"
-    mortal = study(dies="s05", once=str(once), log=str(log))
-    result = run_study(mortal, tmp_path / "run", workers=2, recheck=False)
+    mortal = plan(dies="s05", once=str(once), log=str(log))
+    result = run_plan(mortal, tmp_path / "run", workers=2, recheck=False)
     assert len(log.read_text().splitlines()) == UNITS + 1  # its block ran again, as a whole
     assert not result.failures
     for name in ("outcomes.parquet", "traces.parquet"):
@@ -192,7 +192,7 @@ def test_a_worker_that_dies_once_costs_nothing(undisturbed, tmp_path):
 
 
 def test_a_scene_that_kills_its_worker_loses_itself_alone(tmp_path):
-    result = run_study(study_of(SYSTEM, dies="s05"), tmp_path, workers=2)
+    result = run_plan(plan_of(SYSTEM, dies="s05"), tmp_path, workers=2)
     assert [trial.outcome.scene for trial in result.trials if trial.outcome.failed] == ["s05"]
     (failure,) = result.failures
     assert "SIGKILL" in failure.error
@@ -201,7 +201,7 @@ def test_a_scene_that_kills_its_worker_loses_itself_alone(tmp_path):
 
 def test_a_system_that_takes_one_scene_at_a_time_is_found_again_by_the_second_call(tmp_path):
     for computed in (UNITS, 0):
-        result = run_study(study(alone="plain"), tmp_path / "run", workers=0, recheck=False)
+        result = run_plan(plan(alone="plain"), tmp_path / "run", workers=0, recheck=False)
         assert result.blocks_computed == computed
         assert not result.failures
         (finding,) = (text for text in result.findings if "when each ran alone" in text)

@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 from stale_toys import Mine
 
 from faultpath.run.execution.provenance import checkout, run_provenance
-from faultpath.run.execution.runner import run_study
+from faultpath.run.execution.runner import run_plan
 from faultpath.run.work.processes import local
 
 
@@ -41,7 +41,7 @@ def test_provenance_tells_the_run_its_repository_and_every_file_that_flew(tmp_pa
     mine = Mine(tmp_path / "mine")
 
     def told(name: str):
-        result = run_study(mine.study(), tmp_path / name, workers=1)
+        result = run_plan(mine.plan(), tmp_path / name, workers=1)
         started = datetime.now(UTC)
         return run_provenance(tmp_path / name, [], result, started, ["faultpath"], local(1))
 

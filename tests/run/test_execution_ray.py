@@ -1,4 +1,4 @@
-"""A study on a Ray cluster of this machine: what is lost comes back, and nothing else changes."""
+"""A plan on a Ray cluster of this machine: what is lost comes back, and nothing else changes."""
 
 import os
 import re
@@ -11,12 +11,12 @@ from pathlib import Path
 import pytest
 from calls import alive, end_of, until
 from ray_nodes import cluster, node
-from toy_study import SYSTEM, UNITS, study, study_of
+from toy_plan import SYSTEM, UNITS, plan, plan_of
 
 import faultpath
 from faultpath.core.errors import Notice, Stopped, UserError
 from faultpath.run import SystemSpec
-from faultpath.run.execution.runner import run_study
+from faultpath.run.execution.runner import run_plan
 from faultpath.run.store.folder import RunFolder
 from faultpath.run.work import ray_cluster
 from faultpath.run.work.executor import Failed, Lost, Returned, elsewhere, send_message
@@ -48,12 +48,12 @@ def head():
 
 @pytest.fixture(scope="module")
 def here(tmp_path_factory):
-    """The study by processes of this machine."""
-    return run_study(study(), tmp_path_factory.mktemp("here"), workers=0)
+    """The plan by processes of this machine."""
+    return run_plan(plan(), tmp_path_factory.mktemp("here"), workers=0)
 
 
 @pytest.mark.parametrize("lost", ["node", "worker"])
-def test_a_study_that_loses_a_node_or_a_worker_ends_with_the_same_bytes(head, here, tmp_path, lost):
+def test_a_plan_that_loses_a_node_or_a_worker_ends_with_the_same_bytes(head, here, tmp_path, lost):
     """All workers have begun a unit when the node of one, or the process of one, is killed."""
     nodes = [head.add_node(**node())] if lost == "node" else []
     gate, log, workers = tmp_path / "gate", tmp_path / "log", len(nodes) + 1
@@ -71,9 +71,9 @@ def test_a_study_that_loses_a_node_or_a_worker_ends_with_the_same_bytes(head, he
             until(lambda: not all(map(alive, begun)), "a worker's end")
             gate.unlink()
 
-    asked = study(hang_while=str(gate), log=str(log))
+    asked = plan(hang_while=str(gate), log=str(log))
     with RayWorkers(head.address, workers) as hands:
-        there = run_study(asked, tmp_path / "there", executor=hands, progress=kill, recheck=False)
+        there = run_plan(asked, tmp_path / "there", executor=hands, progress=kill, recheck=False)
         assert re.fullmatch(rf"Ray \S+, {workers} nodes?", hands.name)
     assert there.failures == ()
     assert there.outcomes_sha256 == here.outcomes_sha256
@@ -170,9 +170,9 @@ def test_a_node_with_another_system_is_named(head, tmp_path, monkeypatch, option
     file = tmp_path / "other.py"
     file.write_text(OTHER)
     spec = SystemSpec(name=f"{file}:create", options={"needs": option})
-    asked = study().model_copy(update={"system": spec})
+    asked = plan().model_copy(update={"system": spec})
     with RayWorkers(head.address, 1) as hands, pytest.raises(UserError, match=says):
-        run_study(asked, tmp_path / "run", executor=hands)
+        run_plan(asked, tmp_path / "run", executor=hands)
 
 
 @pytest.fixture(scope="module")
@@ -192,8 +192,8 @@ def test_a_unit_that_is_its_workers_end_or_takes_too_much_loses_itself_alone(
     hands, tmp_path, does, limit, says
 ):
     """One is killed in the moment in which its flight begins, each time."""
-    trials = study_of(f"{UNRULY}:unruly", ("s00", "s05"), does=does, where="s05", dies="s05")
-    found = run_study(trials, tmp_path, executor=hands, recheck=False, **limit)
+    trials = plan_of(f"{UNRULY}:unruly", ("s00", "s05"), does=does, where="s05", dies="s05")
+    found = run_plan(trials, tmp_path, executor=hands, recheck=False, **limit)
     (failure,) = found.failures
     assert (failure.scene, found.blocks_computed) == ("s05", 2)
     assert re.search(says, failure.error)

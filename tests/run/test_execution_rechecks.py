@@ -8,13 +8,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from toy_study import SCENES, UNITS, study, study_of
+from toy_plan import SCENES, UNITS, plan, plan_of
 from toy_system import CONSUMERS, STEPS, ToySystem
 
 from faultpath.core.errors import Stopped
 from faultpath.loop import Reading
 from faultpath.run.execution.recheck import SAMPLE, Rechecks
-from faultpath.run.execution.runner import run_study
+from faultpath.run.execution.runner import run_plan
 
 _CALLS = itertools.count()
 
@@ -71,10 +71,10 @@ def odd(**options: str) -> Odd:
     return Odd(**options)
 
 
-def _study(kind: str, count: int = 1, **options: str):
+def _plan(kind: str, count: int = 1, **options: str):
     if kind in ("reads", "writes", "plant writes"):
         pytest.importorskip("torch")
-    return study_of(f"{__file__}:odd", count=count, odd=kind, **options)
+    return plan_of(f"{__file__}:odd", count=count, odd=kind, **options)
 
 
 @pytest.mark.parametrize(
@@ -88,11 +88,11 @@ def _study(kind: str, count: int = 1, **options: str):
     ],
 )
 def test_an_oddity_is_named_and_kept(tmp_path, kind, said):
-    trials = _study(kind)
-    result = run_study(trials, tmp_path, workers=int(kind == "writes"))
+    trials = _plan(kind)
+    result = run_plan(trials, tmp_path, workers=int(kind == "writes"))
     found = [finding for finding in result.findings if re.search(said, finding)]
     assert found, result.findings
-    again = run_study(trials, tmp_path, workers=0)
+    again = run_plan(trials, tmp_path, workers=0)
     assert again.blocks_computed == 0
     assert again.findings == result.findings
     held = json.loads((tmp_path / "deliveries.json").read_text())
@@ -104,23 +104,23 @@ def test_an_oddity_is_named_and_kept(tmp_path, kind, said):
     [("clock", "4"), ("random", "10"), ("cache", "10"), ("by-place", "4"), ("by-place", "10")],
 )
 def test_what_does_not_repeat_is_seen_whatever_the_reason(tmp_path, kind, block):
-    findings = run_study(_study(kind, count=12, block=block), tmp_path, workers=0).findings
+    findings = run_plan(_plan(kind, count=12, block=block), tmp_path, workers=0).findings
     assert findings
     assert all(said.startswith("Results do not repeat: ") for said in findings)
 
 
 @pytest.mark.parametrize("kind", ["", "crowded"])
 def test_a_run_killed_between_second_runs_ends_with_the_same_tables(tmp_path, kind, monkeypatch):
-    trials = _study(kind, count=12, block="10")
-    whole = run_study(trials, tmp_path / "whole", workers=0)
+    trials = _plan(kind, count=12, block="10")
+    whole = run_plan(trials, tmp_path / "whole", workers=0)
     assert len(whole.rechecks) == 2
     for flights in range(2):
         folder = tmp_path / str(flights)
         with monkeypatch.context() as patched:
             patched.setattr(Rechecks, "handle_reply", _stopping(flights))
             with pytest.raises(Stopped):
-                run_study(trials, folder, workers=0)
-        result = run_study(trials, folder, workers=0)
+                run_plan(trials, folder, workers=0)
+        result = run_plan(trials, folder, workers=0)
         assert result.rechecks == whole.rechecks
         for name in ("outcomes.parquet", "deliveries.json", "rechecks.json"):
             assert (folder / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
@@ -138,47 +138,47 @@ def _stopping(after: int):
 
 
 def test_a_few_scenes_of_a_later_treatment_are_flown_at_other_places_than_before(tmp_path):
-    result = run_study(_study("", count=12, block="10"), tmp_path, workers=0)
+    result = run_plan(_plan("", count=12, block="10"), tmp_path, workers=0)
     assert [each.why for each in result.rechecks].count("sample") == 1
     few = next(each for each in result.rechecks if each.why == "sample")
     (one,) = (each for each in result.rechecks if each is not few)
     assert (one.why, len(one.scenes), one.unit != few.unit) == ("guarded", 1, True)
     assert (len(few.scenes), few.unit_scenes, few.differs) == (SAMPLE, 10, "")
     assert all(SCENES.index(scene) > i for i, scene in enumerate(few.scenes))
-    first = study().rows[0].treatment
+    first = plan().rows[0].treatment
     assert (few.variant, few.faults, few.seed) != (first.variant, "correct inputs", first.seed)
 
 
 def test_a_sound_system_has_none_and_pays_for_two_flights_once(tmp_path):
     log = tmp_path / "log"
-    asked = study(log=str(log))
-    result = run_study(asked, tmp_path / "run", workers=0)
+    asked = plan(log=str(log))
+    result = run_plan(asked, tmp_path / "run", workers=0)
     assert result.findings == ()
     assert len(log.read_text().splitlines()) == UNITS + 2
-    run_study(asked, tmp_path / "run", workers=0)
+    run_plan(asked, tmp_path / "run", workers=0)
     assert len(log.read_text().splitlines()) == UNITS + 2
-    bare = run_study(study(), tmp_path / "bare", workers=0, recheck=False)
+    bare = run_plan(plan(), tmp_path / "bare", workers=0, recheck=False)
     assert bare.outcomes_sha256 == result.outcomes_sha256
     assert not (tmp_path / "bare" / "rechecks.json").exists()
 
 
 def test_one_that_leaves_its_reading_alone_is_not_accused(tmp_path):
-    assert run_study(_study("reads"), tmp_path, workers=0).findings == ()
+    assert run_plan(_plan("reads"), tmp_path, workers=0).findings == ()
 
 
 def test_a_reader_that_never_reads_is_named(tmp_path):
-    row = study().rows[0]
+    row = plan().rows[0]
     deaf = row.model_copy(
         update={
             "variant": "deaf",
             "treatment": row.treatment.model_copy(update={"variant": "deaf"}),
         }
     )
-    asked = study().model_copy(update={"rows": (row, deaf)})
-    (finding,) = run_study(asked, tmp_path, workers=0).findings
+    asked = plan().model_copy(update={"rows": (row, deaf)})
+    (finding,) = run_plan(asked, tmp_path, workers=0).findings
     assert finding.startswith("Variant 'deaf' declares that observer.balance reads 'mass', but it")
 
 
 def test_failed_trials_are_not_drawn(tmp_path):
-    result = run_study(study(raises="s05"), tmp_path, workers=0)
+    result = run_plan(plan(raises="s05"), tmp_path, workers=0)
     assert result.findings == ()

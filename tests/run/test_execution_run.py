@@ -6,15 +6,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from toy_study import FAULT, SCENES, UNITS, rows, study
+from toy_plan import FAULT, SCENES, UNITS, plan, rows
 from toy_system import STEPS
 
 from faultpath.core.errors import UserError
 from faultpath.core.files import parquet
 from faultpath.loop import NotDelivered, TapCount, UndeclaredReader
-from faultpath.run.execution.runner import RunResult, run_study
-from faultpath.run.execution.schedule import plan
-from faultpath.run.plan import Row, Study, Treatment
+from faultpath.run.execution.runner import RunResult, run_plan
+from faultpath.run.execution.schedule import units_of
+from faultpath.run.plan import Plan, Row, Treatment
 from faultpath.run.store import tables
 from faultpath.run.store.folder import RunFolder, read_outcomes
 from faultpath.run.store.tables import decode_traces, traces_of
@@ -26,7 +26,7 @@ from faultpath.system.declared import Library, SceneRef
 @pytest.fixture(scope="session")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[RunResult, Path]:
     folder = tmp_path_factory.mktemp("whole") / "run"
-    return run_study(study(), folder, workers=0), folder
+    return run_plan(plan(), folder, workers=0), folder
 
 
 def _comparable(rows: tuple[Trial, ...]) -> list[tuple[object, ...]]:
@@ -36,7 +36,7 @@ def _comparable(rows: tuple[Trial, ...]) -> list[tuple[object, ...]]:
     ]
 
 
-def test_rows_are_in_the_order_of_the_study_then_of_the_library(whole):
+def test_rows_are_in_the_order_of_the_plan_then_of_the_library(whole):
     result, _ = whole
     addresses = [(r.variant, r.condition, r.seed, r.outcome.scene) for r in result.trials]
     assert addresses == [(r.variant, r.condition, r.seed, s) for r in rows() for s in SCENES]
@@ -61,7 +61,7 @@ def test_the_fault_changes_what_it_should(whole):
 
 def test_worker_processes_give_the_same_bytes(whole, tmp_path):
     result, folder = whole
-    other = run_study(study(), tmp_path, workers=2)
+    other = run_plan(plan(), tmp_path, workers=2)
     assert other.outcomes_sha256 == result.outcomes_sha256
     for name in ("outcomes.parquet", "traces.parquet", "deliveries.json"):
         assert (tmp_path / name).read_bytes() == (folder / name).read_bytes()
@@ -82,7 +82,7 @@ def test_the_tables_read_back(whole):
 @pytest.mark.parametrize("scenes", [("s03",), SCENES[2:9], SCENES[::-1]])
 def test_a_selection_in_any_order_gives_the_rows_of_the_whole(whole, tmp_path, scenes):
     result, _ = whole
-    part = run_study(study(scenes), tmp_path, workers=0)
+    part = run_plan(plan(scenes), tmp_path, workers=0)
     expected = tuple(r for r in result.trials if r.outcome.scene in scenes)
     assert _comparable(part.trials) == _comparable(expected)
 
@@ -109,9 +109,9 @@ def test_a_shard_without_receipts_is_named_and_run_again(whole, tmp_path, monkey
     with monkeypatch.context() as patch:
         encode = parquet.encode
         patch.setattr(tables, "encode", lambda columns, values, notes=None: encode(columns, values))
-        run_study(study(), tmp_path, workers=0)
+        run_plan(plan(), tmp_path, workers=0)
     notices: list[str] = []
-    after = run_study(study(), tmp_path, workers=0, notice=notices.append)
+    after = run_plan(plan(), tmp_path, workers=0, notice=notices.append)
     assert after.blocks_kept == 0
     assert len(notices) == after.blocks_computed
     assert all("kept no delivery log" in notice for notice in notices)
@@ -120,11 +120,11 @@ def test_a_shard_without_receipts_is_named_and_run_again(whole, tmp_path, monkey
 
 def test_progress_reaches_the_end_and_never_goes_back(tmp_path):
     seen: list[Progress] = []
-    run_study(study(), tmp_path, workers=2, progress=seen.append)
+    run_plan(plan(), tmp_path, workers=2, progress=seen.append)
     rows = [int(progress.count.split()[0]) for progress in seen]
     assert rows == sorted(rows)
     assert (rows[0], rows[-1], seen[-1].count) == (0, 120, "120 of 120 trials")
-    assert seen[-1].done == seen[-1].total == 10 * len(study().treatments())
+    assert seen[-1].done == seen[-1].total == 10 * len(plan().treatments())
     assert all(0 <= progress.done <= progress.total for progress in seen)
 
 
@@ -138,7 +138,7 @@ def test_bookkeeping_grows_with_the_rows_and_not_with_rows_times_blocks(tmp_path
     counts: list[Counter[str]] = []
     for scenes in (SCENES[:2], SCENES):
         calls.clear()
-        run_study(study(scenes), tmp_path / str(len(scenes)), workers=0)
+        run_plan(plan(scenes), tmp_path / str(len(scenes)), workers=0)
         counts.append(Counter(calls))
     assert counts[0] == counts[1]
 
@@ -151,9 +151,9 @@ def test_rows_of_one_condition_may_have_scenes_of_their_own(tmp_path: Path) -> N
         Row(variant="observed", condition="correct", seed=0, treatment=early, scenes=SCENES[2:]),
         Row(variant="plain", condition="correct", seed=0, treatment=late, scenes=SCENES[2:]),
     ]
-    parts = run_study(_study_of(*rows), tmp_path / "parts", workers=0)
-    whole = run_study(
-        _study_of(Row(variant="observed", condition="correct", seed=0, treatment=early)),
+    parts = run_plan(_plan_of(*rows), tmp_path / "parts", workers=0)
+    whole = run_plan(
+        _plan_of(Row(variant="observed", condition="correct", seed=0, treatment=early)),
         tmp_path / "whole",
         workers=0,
     )
@@ -163,8 +163,8 @@ def test_rows_of_one_condition_may_have_scenes_of_their_own(tmp_path: Path) -> N
     assert parts.deliveries.at("observed", "correct") == whole.deliveries.at("observed", "correct")
 
 
-def _study_of(*rows: Row, scenes: tuple[str, ...] = SCENES) -> Study:
-    return study().model_copy(update={"rows": rows, "scenes": scenes})
+def _plan_of(*rows: Row, scenes: tuple[str, ...] = SCENES) -> Plan:
+    return plan().model_copy(update={"rows": rows, "scenes": scenes})
 
 
 @pytest.mark.parametrize(
@@ -185,25 +185,25 @@ def test_an_audit_that_is_wrong_stops(tmp_path, variant, reader, error, workers)
         treatment=Treatment(variant=variant, faults=(fault,)),
     )
     with pytest.raises(error, match=r"observer\.balance"):
-        run_study(_study_of(row), tmp_path, workers=workers)
+        run_plan(_plan_of(row), tmp_path, workers=workers)
 
 
 @pytest.mark.parametrize(
     ("wrong", "sentence"),
     [
-        (study(("s00", "nowhere")), "has no scene 'nowhere'"),
-        (study(("s00", "s01", "s00")), "selects scene 's00' twice"),
-        (study(()), "selects no scene"),
-        (_study_of(rows()[0], rows()[0]), "two rows"),
+        (plan(("s00", "nowhere")), "has no scene 'nowhere'"),
+        (plan(("s00", "s01", "s00")), "selects scene 's00' twice"),
+        (plan(()), "selects no scene"),
+        (_plan_of(rows()[0], rows()[0]), "two rows"),
         (
-            _study_of(Row(variant="x", condition="p", seed=0, treatment=Treatment(variant="no"))),
+            _plan_of(Row(variant="x", condition="p", seed=0, treatment=Treatment(variant="no"))),
             "no variant 'no'",
         ),
     ],
 )
-def test_a_study_that_cannot_be_run_is_refused(tmp_path, wrong, sentence):
+def test_a_plan_that_cannot_be_run_is_refused(tmp_path, wrong, sentence):
     with pytest.raises(UserError, match=sentence):
-        run_study(wrong, tmp_path, workers=0)
+        run_plan(wrong, tmp_path, workers=0)
 
 
 def test_a_key_names_everything_that_decides_a_result():
@@ -218,6 +218,6 @@ def test_a_key_names_everything_that_decides_a_result():
         (treatments[:1], scenes[:1], 4, other, "fingerprint"),
         (treatments[:1], scenes[:1], 4, here, "another"),
     )
-    keys = [plan(*case)[0].key for case in cases]
+    keys = [units_of(*case)[0].key for case in cases]
     assert keys[0] == keys[1]
     assert len(set(keys)) == 5

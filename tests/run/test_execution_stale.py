@@ -10,7 +10,7 @@ from stale_toys import Mine
 
 from faultpath.core.errors import UserError
 from faultpath.run.execution.provenance import run_provenance
-from faultpath.run.execution.runner import run_study
+from faultpath.run.execution.runner import run_plan
 from faultpath.run.work.processes import local
 
 PLACES = ("file", "helper", "data")
@@ -41,25 +41,25 @@ def _distances(result) -> list[float]:
 
 @pytest.mark.parametrize("place", PLACES)
 def test_after_an_edit_nothing_stale_comes_back(place, mine, tmp_path):
-    before = run_study(mine.study(), tmp_path / "run", workers=1)
+    before = run_plan(mine.plan(), tmp_path / "run", workers=1)
     shards = {p: p.read_bytes() for p in (tmp_path / "run").rglob("*.parquet")}
     edited = _edit(mine, place)
     with pytest.raises(UserError, match=rf"other code than this.*{edited}"):
-        run_study(mine.study(), tmp_path / "run", workers=1)
+        run_plan(mine.plan(), tmp_path / "run", workers=1)
     assert {p: p.read_bytes() for p in (tmp_path / "run").rglob("*.parquet")} == shards
-    after = run_study(mine.study(), tmp_path / "new", workers=1)
+    after = run_plan(mine.plan(), tmp_path / "new", workers=1)
     assert after.blocks_kept == 0
     assert after.system_fingerprint != before.system_fingerprint
     assert _distances(after) == pytest.approx([x + 1.0 for x in _distances(before)])
 
 
 def test_edited_back_the_trials_are_kept(mine, tmp_path):
-    run_study(mine.study(), tmp_path / "run", workers=1)
+    run_plan(mine.plan(), tmp_path / "run", workers=1)
     source = mine.helper.read_text()
     _edit(mine, "helper")
     mine.helper.write_text(source)
     notices: list[str] = []
-    again = run_study(mine.study(), tmp_path / "run", workers=1, notice=notices.append)
+    again = run_plan(mine.plan(), tmp_path / "run", workers=1, notice=notices.append)
     assert (again.blocks_kept, again.blocks_computed) == (3, 0)
     assert [notice.partition(", ")[0] for notice in notices] == ["Kept 10 of 10 trials"]
 
@@ -68,7 +68,7 @@ def test_edited_back_the_trials_are_kept(mine, tmp_path):
 def test_an_edit_while_a_run_is_under_way_ends_it(place, mine, tmp_path):
     """A worker that is built after the edit, or that reads the file after it, is refused."""
     once, log = tmp_path / "died", tmp_path / "log"
-    study = mine.study(dies="s05", once=str(once), log=str(log))
+    plan = mine.plan(dies="s05", once=str(once), log=str(log))
     edited = ""
 
     def edit(progress) -> None:
@@ -77,7 +77,7 @@ def test_an_edit_while_a_run_is_under_way_ends_it(place, mine, tmp_path):
             edited = _edit(mine, place)
 
     with pytest.raises(UserError, match="changed while the run was under way") as refusal:
-        run_study(study, tmp_path / "run", workers=1, progress=edit)
+        run_plan(plan, tmp_path / "run", workers=1, progress=edit)
     assert edited in str(refusal.value)
     assert "\n" not in str(refusal.value)
 
@@ -88,28 +88,28 @@ def test_without_workers_data_that_change_under_way_end_the_run(mine, tmp_path):
             mine.data.write_text("1.0")
 
     with pytest.raises(UserError, match=r"push\.txt changed while the run was under way"):
-        run_study(mine.study(), tmp_path / "run", workers=0, progress=edit)
+        run_plan(mine.plan(), tmp_path / "run", workers=0, progress=edit)
     assert len(list((tmp_path / "run" / "shards").iterdir())) == 2
 
 
 def test_an_edit_under_way_of_what_nothing_loads_ends_no_run(mine, tmp_path):
     other = mine.file.with_name("plots.py")
     other.touch()
-    run_study(mine.study(), tmp_path / "run", workers=0, progress=lambda _: other.write_text("x"))
+    run_plan(mine.plan(), tmp_path / "run", workers=0, progress=lambda _: other.write_text("x"))
     with pytest.raises(UserError, match=r"other code than this.*plots\.py"):
-        run_study(mine.study(), tmp_path / "run", workers=0)
+        run_plan(mine.plan(), tmp_path / "run", workers=0)
 
 
 def test_data_that_are_not_there_are_named(mine, tmp_path):
     mine.data.unlink()
     with pytest.raises(UserError, match=r"push\.txt.*data_files"):
-        run_study(mine.study(), tmp_path / "run", workers=0)
+        run_plan(mine.plan(), tmp_path / "run", workers=0)
 
 
 def _finished(mine: Mine, notices: list[str] | None = None):
     folder = mine.file.parent.parent / "run"
     said = (notices if notices is not None else []).append
-    result = run_study(mine.study(), folder, workers=1, notice=said)
+    result = run_plan(mine.plan(), folder, workers=1, notice=said)
     return run_provenance(folder, [], result, datetime.now(UTC), ["again"], local(1))
 
 

@@ -11,7 +11,7 @@ from faultpath.core.errors import UserError
 from faultpath.loop import TapCount
 from faultpath.run.attempt import Done
 from faultpath.run.code import CodeState
-from faultpath.run.plan import Row, Study, SystemSpec, Treatment
+from faultpath.run.plan import Plan, Row, SystemSpec, Treatment
 from faultpath.run.store.folder import RunFolder, read_outcomes
 from faultpath.run.store.manifest import FORMAT, Manifest
 from faultpath.run.store.tables import encode_shard
@@ -23,8 +23,8 @@ def _manifest(name: str = "a", seed: int = 0, scenes: tuple[str, ...] = ("s0",))
         variant="v", condition="correct", seed=seed, treatment=Treatment(variant="v", seed=seed)
     )
     system = SystemSpec(name="quadrotor")
-    study = Study(name=name, system=system, library="l", scenes=scenes, rows=(row,))
-    return Manifest(faultpath_version="1", code=_code(), library_hash="h", study=study)
+    plan = Plan(name=name, system=system, library="l", scenes=scenes, rows=(row,))
+    return Manifest(faultpath_version="1", code=_code(), library_hash="h", plan=plan)
 
 
 def _code(**files: str) -> CodeState:
@@ -118,14 +118,14 @@ def test_a_shard_of_another_unit_or_of_other_scenes_is_not_taken(folder):
 @pytest.mark.parametrize(
     ("other", "what"),
     [
-        (_manifest(name="b"), "another study"),
+        (_manifest(name="b"), "another name"),
         (_manifest(seed=1), "another set of variants, faults or seeds"),
         (_manifest().model_copy(update={"code": _code(helper="2")}), r"other code.*: helper\)"),
         (_manifest().model_copy(update={"library_hash": "g"}), "another state of the library"),
         (_manifest().model_copy(update={"faultpath_version": "2"}), "version of faultpath"),
     ],
 )
-def test_another_study_is_refused(folder, other, what):
+def test_another_plan_is_refused(folder, other, what):
     before = folder.manifest.read_bytes()
     with pytest.raises(UserError, match=what), folder.open(other, _unexpected):
         pass

@@ -1,4 +1,4 @@
-"""From cells to trials: one study a setting, flown into one folder and laid out in one table."""
+"""From cells to trials: one plan a setting, flown into one folder and laid out in one table."""
 
 import hashlib
 import re
@@ -8,8 +8,8 @@ from pathlib import Path
 
 from faultpath.faults import at_readers
 from faultpath.run import (
+    Plan,
     Row,
-    Study,
     SystemSpec,
     Treatment,
     Trials,
@@ -31,7 +31,7 @@ class Leg:
 
     setting: Setting
     system: System
-    study: Study
+    plan: Plan
 
     @property
     def folder(self) -> str:
@@ -41,7 +41,7 @@ class Leg:
     @property
     def trials(self) -> int:
         """Trials of all treatments."""
-        return len(self.study.treatments()) * len(self.study.scenes)
+        return len(self.plan.treatments()) * len(self.plan.scenes)
 
 
 @dataclass(frozen=True)
@@ -79,31 +79,31 @@ def plan_legs(
         spec = SystemSpec(name=SYSTEM, options={**setting.options, **options})
         system = load_system(spec)
         scenes = system.library(setting.library).scenes[: profile.scenes]
-        study = Study(
+        plan = Plan(
             name=str(setting),
             system=spec,
             library=setting.library,
             scenes=tuple(scene.id for scene in scenes),
             rows=tuple(_row(system, cell, seed) for cell in members for seed in cell.seeds),
         )
-        legs.append(Leg(setting, system, study))
+        legs.append(Leg(setting, system, plan))
     return tuple(legs)
 
 
 def fly(legs: Sequence[Leg], folder: Path, run: Run, show: Callable[[Progress], None]) -> Flown:
     """Run the legs one after the other, keeping what the folder of a run already holds.
 
-    `run` is what runs a study of a system into a folder. Raises as `run_study` does.
+    `run` is what runs a plan of a system into a folder. Raises as `run_plan` does.
     """
     before, total = 0, sum(leg.trials for leg in legs)
     results: list[RunResult] = []
     for leg in legs:
 
         def progress(done: Progress, before: int = before, leg: Leg = leg) -> None:
-            show(done.within(total, before, leg.study.name))
+            show(done.within(total, before, leg.plan.name))
 
         place = folder / FLIGHTS / leg.folder
-        results.append(run(leg.study, leg.system, progress, place, shared=True, recheck=False))
+        results.append(run(leg.plan, leg.system, progress, place, shared=True, recheck=False))
         before += leg.trials
     return Flown(tuple(legs), tuple(results))
 

@@ -5,7 +5,7 @@ from collections.abc import Generator
 from dataclasses import dataclass
 from typing import Any, ClassVar, Generic, TypeAlias, TypeVar
 
-from faultpath.run import Deliveries, Study, Trials
+from faultpath.run import Deliveries, Plan, Trials
 from faultpath.run.execution.state import Stop
 from faultpath.run.question import Request
 from faultpath.system.system import System
@@ -17,7 +17,7 @@ Items = TypeVar("Items")
 class Round:
     """Trials of one round, those of earlier rounds included."""
 
-    study: Study
+    plan: Plan
     items: int = 1
     """So many of what the analysis adds from round to round."""
     most: int = 1
@@ -25,7 +25,7 @@ class Round:
     notice: str = ""
     """Sentence to be shown before the round."""
     stop: Stop | None = None
-    """Asked at each analysis of a sequential study."""
+    """Asked at each analysis of a sequential plan."""
 
 
 Rounds: TypeAlias = Generator[Round, Trials, Items]

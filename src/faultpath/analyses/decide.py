@@ -7,7 +7,7 @@ import numpy as np
 
 from faultpath.analyses.compared import PairedTrials
 from faultpath.analyses.contrasts import change_name, default_primary, effect_name
-from faultpath.analyses.descriptive import cells_of, percent, secondary, untested_conditions
+from faultpath.analyses.descriptive import counts_of, percent, secondary, untested_conditions
 from faultpath.analyses.effects import Change, Effect, Missing
 from faultpath.analyses.facts import ComparisonFacts, Question
 from faultpath.analyses.family import TestedContrasts, family_of
@@ -52,9 +52,9 @@ def decide(
     """
     primary = primary_condition(question.primary or "", conditions)
     facts = facts.model_copy(update={"primary": primary})
-    cells = cells_of(question, conditions, trials)
+    counts = counts_of(question, conditions, trials)
     # Whether a fault acted is told by receipts, and other tools' results have none.
-    untested = () if facts.judged else untested_conditions(conditions, cells)
+    untested = () if facts.judged else untested_conditions(conditions, counts)
     comparison, family = family_of(question, facts, conditions, trials, untested)
     invalid: Invalid | None = "unpaired" if comparison.mismatches else None
     if not repeats:
@@ -81,7 +81,7 @@ def decide(
         question=question,
         facts=facts,
         conditions=tuple(conditions),
-        cells=cells,
+        counts=counts,
         effects=tuple(effects.values()),
         changes=tuple(_change(condition, family) for condition in family.changes),
         secondary=tuple(

@@ -24,43 +24,43 @@ def percent(success: Floats) -> float:
     return 100.0 * float(seed_sums(ran).sum()) / ran.size
 
 
-def cells_of(
+def counts_of(
     question: Question, conditions: Sequence[Condition], trials: Trials
 ) -> tuple[VariantCounts, ...]:
     """Return how the trials of both versions ended under every condition."""
-    cells: list[VariantCounts] = []
+    counts: list[VariantCounts] = []
     for condition in conditions:
         for variant in (question.baseline, question.repair):
             rows = trials.rows(variant, condition.name).ravel()
             rows = rows[rows >= 0]
-            count = {status: int(trials.has(status)[rows].sum()) for status in Status}
-            ran = len(rows) - count[Status.FAILED]
+            ended = {status: int(trials.has(status)[rows].sum()) for status in Status}
+            ran = len(rows) - ended[Status.FAILED]
             times = trials.time_s[rows[trials.has(Status.SUCCESS)[rows]]]
             times = times[np.isfinite(times)]
             faulted, altered = (trials.steps[:, rows] > 0).sum(axis=1).tolist()
-            cells.append(
+            counts.append(
                 VariantCounts(
                     variant=variant,
                     condition=condition.name,
                     trials=len(rows),
-                    success=count[Status.SUCCESS],
-                    crash=count[Status.CRASH],
-                    timeout=count[Status.TIMEOUT],
-                    failed=count[Status.FAILED],
-                    success_percent=100 * count[Status.SUCCESS] / ran if ran else 0.0,
+                    success=ended[Status.SUCCESS],
+                    crash=ended[Status.CRASH],
+                    timeout=ended[Status.TIMEOUT],
+                    failed=ended[Status.FAILED],
+                    success_percent=100 * ended[Status.SUCCESS] / ran if ran else 0.0,
                     median_time_s=float(np.median(times)) if len(times) else None,
                     faulted_trials=faulted,
                     altered_trials=altered,
                 )
             )
-    return tuple(cells)
+    return tuple(counts)
 
 
 def untested_conditions(
-    conditions: Sequence[Condition], cells: Sequence[VariantCounts]
+    conditions: Sequence[Condition], counts: Sequence[VariantCounts]
 ) -> tuple[str, ...]:
     """Return the conditions on which the fault changed nothing in any trial."""
-    acted = {cell.condition for cell in cells if cell.altered_trials}
+    acted = {count.condition for count in counts if count.altered_trials}
     return tuple(
         condition.name
         for condition in conditions

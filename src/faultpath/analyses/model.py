@@ -114,11 +114,12 @@ class StoppedAudit(Result):
 class AuditResult(Result):
     """The numbers that tables, pictures and the report show; written as `record.json`."""
 
-    format: Literal[6] = 6
+    format: Literal[7] = 7
     question: Question
     facts: ComparisonFacts
     conditions: tuple[Condition, ...]
-    cells: tuple[VariantCounts, ...]
+    counts: tuple[VariantCounts, ...]
+    """Under each condition those of the baseline, then those of the repair."""
     effects: tuple[Effect, ...]
     changes: tuple[Change, ...]
     secondary: tuple[Secondary, ...] = ()

@@ -1,158 +1,21 @@
-"""Plan an audit: which treatments a question about a repair needs, under which conditions of the
+"""Parts of the plans of all analyses: variants, scenes, and rows under the conditions of a
 fault."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from pathlib import PurePath
 
-from faultpath.analyses.analysis import Analysis, Round, Rounds
-from faultpath.analyses.decide import decide, primary_condition
-from faultpath.analyses.facts import ComparisonFacts, SceneOrder, facts_of, question_of
-from faultpath.analyses.model import CORRECT, SHARED, Condition, FaultedTap
-from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences.wording import counted
-from faultpath.analyses.stopping import stops
+from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
 from faultpath.core.text import unknown
 from faultpath.faults import Fault, at_readers, describe
 from faultpath.interface import module_of
-from faultpath.loop import TapCount
-from faultpath.run import (
-    Deliveries,
-    Row,
-    Study,
-    SystemSpec,
-    Treatment,
-    Trials,
-)
-from faultpath.run.question import FEWEST_TRAININGS, AuditQuestion, RepairQuestion
+from faultpath.run import Row, Treatment
+from faultpath.run.question import RepairQuestion
 from faultpath.system.declared import Library, Variant
 from faultpath.system.system import System
 
-_BATCH = 5
-"""Scenes from one analysis to the next of a sequential audit, where the system runs as many at
-once: fewer save few trials and cost much for systems that run their scenes together."""
-_ORDER_SEED = 0
+ORDER_SEED = 0
 """One order for each library, so that nobody can choose among several."""
-
-
-@dataclass(frozen=True)
-class Audit(Analysis[None]):
-    """A question and the study that answers it."""
-
-    question: AuditQuestion
-    facts: ComparisonFacts
-    conditions: tuple[Condition, ...]
-    study: Study
-
-    def rounds(self) -> Rounds[None]:
-        """Yield the only round."""
-        yield Round(self.study, stop=self.stops)
-
-    def conclude(
-        self, trials: Trials, deliveries: Deliveries, items: None = None
-    ) -> DecisionRecord:
-        """Return the decision record of a run; raises as `faultpath.analyses.decide`."""
-        question = self.question
-        conditions = [
-            condition.model_copy(
-                update={
-                    "faulted": faulted_taps(deliveries.at(question.repair, condition.name)),
-                    "baseline_faulted": faulted_taps(
-                        deliveries.at(question.baseline, condition.name)
-                    ),
-                }
-            )
-            for condition in self.conditions
-        ]
-        return decide(
-            question,
-            self.facts,
-            conditions,
-            trials,
-            deliveries.findings,
-            repeats=deliveries.repeats,
-        )
-
-    def stops(self, trials: Trials) -> bool:
-        """Return whether a sequential audit ends with these trials."""
-        return stops(self.question, self.facts, self.conditions, trials)
-
-
-def faulted_taps(counts: Sequence[TapCount]) -> tuple[FaultedTap, ...]:
-    """Return the taps at which receipts show a fault in force."""
-    return tuple(
-        FaultedTap(
-            channel=tap.channel,
-            reader=tap.reader,
-            faulted_steps=tap.faulted_steps,
-            altered_steps=tap.altered_steps,
-        )
-        for tap in counts
-        if tap.faulted_steps
-    )
-
-
-def plan_audit(system: System, spec: SystemSpec, request: AuditQuestion, library: Library) -> Audit:
-    """Lay out the treatments: both variants under correct inputs, under the fault at each module
-    that reads it alone, and under the fault shared by all of them.
-
-    The primary condition, which leads the headline, is by default the shared one, or the only
-    isolated one.
-
-    Raises `UserError` for an unknown variant or metric, a repair that is its own baseline, a number
-    of scenes that the library does not have, a fault that reaches neither variant, a primary
-    condition that does not exist, newly trained models of a system that trains none, from one seed
-    or in a sequential audit, or a margin that is none.
-    """
-    variants = two_variants(system, request)
-    sequential = request.stop_when is not None
-    chosen = scenes_of(library, request.scenes, in_order=not sequential)
-    faults = system.fault(request.fault)
-    by_condition = faults_by_condition(faults, variants)
-    conditions = [
-        _condition(name, by_variant[request.repair], by_variant[request.baseline])
-        for name, by_variant in by_condition.items()
-    ]
-    # Where the fault cannot reach a variant, that is the treatment under correct inputs: it runs
-    # once.
-    rows = [
-        row
-        for condition, by_variant in by_condition.items()
-        for row in rows_of(condition, by_variant, request.seeds)
-    ]
-    _check(system, request)
-    study = Study(
-        name=f"{spec.name}-{request.repair}-vs-{request.baseline}",
-        system=spec,
-        library=library.name,
-        scenes=chosen,
-        rows=tuple(rows),
-        scenes_per_analysis=min(_BATCH, system.block_size or _BATCH) if sequential else 0,
-    )
-    order = SceneOrder(
-        scenes=chosen,
-        seed=_ORDER_SEED,
-        per_analysis=study.scenes_per_analysis,
-        trials=len(study.treatments()),
-    )
-    facts = ComparisonFacts(
-        **facts_of(system, spec, library),
-        n_scenes=len(chosen),
-        seeds=request.seeds,
-        primary=primary_condition(request.primary or "", conditions),
-        faults=faults,
-        ends={status.value: words for status, words in system.ends.items()},
-        metrics=dict(system.metrics),
-        order=order if sequential else None,
-    )
-    named = [study.name, str(request.fault), PurePath(library.name).stem]
-    if request.stop_when is not None:
-        small = "" if request.margin_pp is None else f"-within-{request.margin_pp:g}"
-        named.append(f"until-{request.stop_when}{small}")
-    question = question_of(request, AuditQuestion, spec)
-    return Audit(question, system, tuple(named), facts, tuple(conditions), study)
 
 
 def faults_by_condition(
@@ -194,48 +57,6 @@ def rows_of(
             yield Row(variant=variant, condition=condition, seed=seed, treatment=treatment)
 
 
-def _condition(name: str, repair: Sequence[Fault], baseline: Sequence[Fault]) -> Condition:
-    """Return a condition of the fault, with what it reaches in each variant."""
-    titles = {CORRECT: "Correct inputs", SHARED: "Shared fault"}
-    readers, baseline_readers = (
-        tuple(dict.fromkeys(reader for fault in faults for reader in fault.readers))
-        for faults in (repair, baseline)
-    )
-    title = titles.get(name, f"{name.replace('_', ' ').capitalize()} only")
-    return Condition(name=name, title=title, readers=readers, baseline_readers=baseline_readers)
-
-
-def _check(system: System, question: AuditQuestion) -> None:
-    """Raise `UserError` for a metric, a margin or a population that means nothing."""
-    if question.thresholds and not question.metric:
-        raise UserError("thresholds of what? Name a metric of the system beside them.")
-    if question.metric and question.metric not in system.metrics:
-        raise UserError(f"{system.name}: {unknown('metric', question.metric, system.metrics)}")
-    margin = question.margin_pp
-    if margin is not None and not (question.stop_when and 0.0 < margin < 100.0):
-        raise UserError(
-            f"a margin of {margin:g} pp says when a sequential audit counts a difference as "
-            "none: give it with --stop-when, between 0 and 100."
-        )
-    if question.generalise != "models":
-        return
-    if question.stop_when:
-        raise UserError(
-            "no test of newly trained models holds wherever one stops: leave --stop-when or "
-            "--generalise models out."
-        )
-    if not system.trained:
-        raise UserError(
-            f"{system.name} has no trained models to generalise to: leave --generalise models out."
-        )
-    if len(question.seeds) < FEWEST_TRAININGS:
-        raise UserError(
-            f"{counted(len(question.seeds), 'seed')} cannot show how newly trained models would "
-            f"spread: give {FEWEST_TRAININGS} or more, such as --seeds 0,1,2,3,4, or leave "
-            "--generalise models out."
-        )
-
-
 def two_variants(system: System, question: RepairQuestion) -> tuple[Variant, Variant]:
     """Return baseline and repair; `UserError` for an unknown one, and where both are one."""
     for name in (question.baseline, question.repair):
@@ -258,7 +79,7 @@ def scenes_of(library: Library, count: int | None, in_order: bool = True) -> tup
         )
     scenes = library.scenes
     if not in_order:
-        stream = generator("scene order", library.content_hash, _ORDER_SEED)
+        stream = generator("scene order", library.content_hash, ORDER_SEED)
         drawn: list[int] = stream.permutation(available).tolist()
         scenes = tuple(scenes[place] for place in drawn)
     return tuple(scene.id for scene in scenes[:count])

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 
-from faultpath.analyses.descriptive import cells_of, untested_conditions
+from faultpath.analyses.descriptive import counts_of, untested_conditions
 from faultpath.analyses.facts import ComparisonFacts, EarlierAnalysis, Question
 from faultpath.analyses.family import TestedContrasts, family_of
 from faultpath.analyses.model import Condition, StoppedAudit
@@ -16,7 +16,7 @@ def stops(
     question: Question, facts: ComparisonFacts, conditions: Sequence[Condition], trials: Trials
 ) -> bool:
     """Return whether a sequential audit stops with these trials; their order does not matter."""
-    untested = untested_conditions(conditions, cells_of(question, conditions, trials))
+    untested = untested_conditions(conditions, counts_of(question, conditions, trials))
     try:
         _, family = family_of(question, facts, conditions, trials, untested)
     except UserError:  # no pair is sound so far

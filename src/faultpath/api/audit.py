@@ -8,7 +8,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from faultpath.analyses.planning import Audit, plan_audit
+from faultpath.analyses.audit import AuditAnalysis, audit_analysis
 from faultpath.analyses.record import DecisionRecord
 from faultpath.analyses.sentences.wording import counted
 from faultpath.analyses.stopping import with_earlier_analyses
@@ -62,7 +62,7 @@ def audit(
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
     conduct = partial(carry_out, signals=arguments.get("signals", True))
-    return run("audit", AuditCall, plan_audit, conduct, system, arguments, progress)
+    return run("audit", AuditCall, audit_analysis, conduct, system, arguments, progress)
 
 
 @with_question_signature(AuditCall)
@@ -101,14 +101,14 @@ def audits(
     return tuple(runs)
 
 
-def carry_out(audit: Audit, job: Job, signals: bool = True) -> Run:
+def carry_out(audit: AuditAnalysis, job: Job, signals: bool = True) -> Run:
     """Run, decide, record `signals`, and write what the run folder's pages are made from.
 
-    Raises `Stopped` on Ctrl-C, and `UserError` where the study cannot be run or nothing can be
+    Raises `Stopped` on Ctrl-C, and `UserError` where the plan cannot be run or nothing can be
     compared.
     """
     folder, system, question = job.folder, audit.system, audit.question
-    shown = system_shown(system, (question.baseline, question.repair), audit.study.scenes)
+    shown = system_shown(system, (question.baseline, question.repair), audit.plan.scenes)
     _, result = job.trials(audit)
 
     conclude = partial(audit.conclude, result.trials)
@@ -162,7 +162,7 @@ def _kept_signals(folder: Path, result: RunResult) -> Signals:
 
 
 def _recorded(
-    audit: Audit,
+    audit: AuditAnalysis,
     job: Job,
     record: DecisionRecord,
     result: RunResult,
@@ -190,7 +190,7 @@ def _recorded(
                 count = f"{done} of {total} batches of {counted(len(few), 'scene')}"
                 show(Progress(done, total, count))
 
-            replays = run_again(before, audit.study, audit.system, job.executor, missing, note)
+            replays = run_again(before, audit.plan, audit.system, job.executor, missing, note)
     except UserError as error:
         return recorded, f"No signals were recorded: {error}", True
     except KeyboardInterrupt:

@@ -3,7 +3,7 @@
 from os import PathLike
 from typing import Any
 
-from faultpath.analyses.map.study import MapPlan, plan_map
+from faultpath.analyses.map.analysis import MapAnalysis, map_analysis
 from faultpath.api.display import Display
 from faultpath.api.folders import MAP, MAP_MADE_FROM, as_text
 from faultpath.api.job import Job, run, with_question_signature
@@ -30,15 +30,15 @@ def map(
         UserError: What was asked cannot be done; the sentence says why, and what to do.
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
-    return run("map", MapCall, plan_map, _map, system, arguments, progress)
+    return run("map", MapCall, map_analysis, _map, system, arguments, progress)
 
 
-def _map(plan: MapPlan, job: Job) -> MapRun:
+def _map(analysis: MapAnalysis, job: Job) -> MapRun:
     """Run the trials of a map, conclude, and write the record.
 
     Raises `Stopped` on Ctrl-C, and `UserError` where the trials cannot be run.
     """
-    points, result = job.trials(plan)
-    record = plan.conclude(result.trials, result.deliveries, points)
+    points, result = job.trials(analysis)
+    record = analysis.conclude(result.trials, result.deliveries, points)
     write_text(job.folder / MAP, as_text(record), job.folder)
-    return MapRun(job.folder, record, job.finish(result, plan.system, MAP_MADE_FROM))
+    return MapRun(job.folder, record, job.finish(result, analysis.system, MAP_MADE_FROM))

@@ -9,8 +9,8 @@ from typing import TypeVar
 import numpy as np
 from pydantic import BaseModel
 
+from faultpath.analyses.audit import faulted_taps
 from faultpath.analyses.model import SHARED
-from faultpath.analyses.planning import faulted_taps
 from faultpath.analyses.record import DecisionRecord
 from faultpath.core.errors import UserError
 from faultpath.core.files.parquet import Unreadable
@@ -115,19 +115,19 @@ def _other_trials(record: DecisionRecord, trials: Trials) -> Iterator[str]:
     variants = set(
         product((question.baseline, question.repair), (p.name for p in record.conditions))
     )
-    cells = {(cell.variant, cell.condition): (cell.trials, cell.success) for cell in record.cells}
+    counts = {(of.variant, of.condition): (of.trials, of.success) for of in record.counts}
     rows = {
         variant: trials.rows(*variant).ravel()
         for variant in product(trials.variants, trials.conditions)
     }
     rows = {variant: of[of >= 0] for variant, of in rows.items() if (of >= 0).any()}
-    if not variants or set(cells) != variants or set(rows) != variants:
+    if not variants or set(counts) != variants or set(rows) != variants:
         yield "the result and the outcomes have different versions, conditions or seeds"
         return
     if np.isnan(trials.time_s[~trials.failed]).any() and not record.facts.judged:
         yield "trials of an audit have no time"
     solved = trials.has(Status.SUCCESS)
-    if any(cells[variant] != (len(of), int(solved[of].sum())) for variant, of in rows.items()):
+    if any(counts[variant] != (len(of), int(solved[of].sum())) for variant, of in rows.items()):
         yield "the result and the outcomes count different successes"
     measured = set(trials.metrics)
     names = {name for of in record.secondary for name in of.metrics}

@@ -17,10 +17,10 @@ from faultpath.api.display import Display, Show, display
 from faultpath.api.runs import MapRun, Run, ScanRun
 from faultpath.api.systems import Chosen, choose, executor_of
 from faultpath.core.errors import UserError
-from faultpath.run import Study, SystemSpec
+from faultpath.run import Plan, SystemSpec
 from faultpath.run.code import system_code
 from faultpath.run.execution.provenance import run_provenance
-from faultpath.run.execution.runner import Failure, RunResult, run_study
+from faultpath.run.execution.runner import Failure, RunResult, run_plan
 from faultpath.run.provenance import RunProvenance
 from faultpath.run.question import Asked, Request, Running, ScanCall, ask
 from faultpath.run.store.folder import keyed
@@ -106,19 +106,19 @@ class Job:
     executor: Executor
     display: Display
     how: Mapping[str, Any] = field(default_factory=dict[str, Any])
-    """Further arguments of `run_study`, such as a time limit."""
+    """Further arguments of `run_plan`, such as a time limit."""
     started: datetime = field(default_factory=lambda: datetime.now(UTC))
 
     def run(
-        self, study: Study, system: System, show: Show, folder: Path | None = None, **how: Any
+        self, plan: Plan, system: System, show: Show, folder: Path | None = None, **how: Any
     ) -> RunResult:
-        """Run a study, into the job's folder unless another is given; see `run_study` for `how`.
+        """Run a plan, into the job's folder unless another is given; see `run_plan` for `how`.
 
-        Raises `Stopped` on Ctrl-C, and `UserError` where the study cannot be run.
+        Raises `Stopped` on Ctrl-C, and `UserError` where the plan cannot be run.
         """
         every: dict[str, Any] = {"notice": self.display.say, **self.how, **how}
         place, executor = folder or self.folder, self.executor
-        return run_study(study, place, progress=show, system=system, executor=executor, **every)
+        return run_plan(plan, place, progress=show, system=system, executor=executor, **every)
 
     def trials(self, analysis: Analysis[Items]) -> tuple[Items, RunResult]:
         """Run the rounds of an analysis, and return what they amount to beside all trials; the
@@ -149,7 +149,7 @@ class Job:
             if not several:
                 run = partial(self.run, system=system, show=show, stop=part.stop)
             while True:
-                result = run(part.study, recheck=not several)
+                result = run(part.plan, recheck=not several)
                 noticed.add("Kept ")  # what later rounds keep, this call has run itself
                 computed += result.blocks_computed
                 try:
@@ -158,7 +158,7 @@ class Job:
                     items = end.value
                     break
             if several:
-                result = run(part.study)
+                result = run(part.plan)
                 trials = len(result.trials)
                 show(Progress(trials, trials, f"{part.items} {analysis.noun}"))
         blocks = result.blocks_kept + result.blocks_computed
@@ -200,7 +200,7 @@ class Job:
 def run(
     call: str,
     model: type[_Request],
-    plan: Callable[[System, SystemSpec, _Request, Library], _Plan],
+    analysis_of: Callable[[System, SystemSpec, _Request, Library], _Plan],
     carry_out: Callable[[_Plan, Job], _Finished],
     system: str | PathLike[str] | System,
     arguments: Mapping[str, object],
@@ -212,7 +212,7 @@ def run(
     Ctrl-C.
     """
     request, chosen, library, display = begin(call, model, system, arguments, progress)
-    analysis = plan(chosen.system, chosen.spec, request, library)
+    analysis = analysis_of(chosen.system, chosen.spec, request, library)
     place = run_folder(request, chosen, analysis.named)
     workers = 0 if chosen.own else request.workers
     with executor_of(chosen.system, workers, request.executor) as executor:
@@ -225,9 +225,9 @@ def run(
 def run_folder(question: Running | ScanCall, chosen: Chosen, named: Sequence[str]) -> Path:
     """Return the folder of a run.
 
-    Without a folder of the caller's it is named after everything that makes it another study,
+    Without a folder of the caller's it is named after everything that makes it another run,
     which begins with `named`, and after the code as it is; of an absolute path, which says more of
-    the machine than of the study, a digest stands for the folders. `UserError` for one that holds a
+    the machine than of the run, a digest stands for the folders. `UserError` for one that holds a
     run of an object, which may have been another.
     """
     parts = [*named, *(f"{key}-{value}" for key, value in sorted(chosen.spec.options.items()))]

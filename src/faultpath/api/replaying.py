@@ -5,10 +5,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from platform import python_version
 
+from faultpath.analyses.audit import audit_analysis
 from faultpath.analyses.examples import choose as picked
 from faultpath.analyses.pairs import by_scene, read_pairs
 from faultpath.analyses.parting import Heard, Parting, parting
-from faultpath.analyses.planning import plan_audit
 from faultpath.analyses.record import DecisionRecord
 from faultpath.api.folders import RECORD
 from faultpath.api.systems import choose
@@ -18,7 +18,7 @@ from faultpath.core.text import unknown
 from faultpath.core.trees import release
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
-from faultpath.run import Study, SystemSpec, Treatment, Trials
+from faultpath.run import Plan, SystemSpec, Treatment, Trials
 from faultpath.run.attempt import Done
 from faultpath.run.check.blocks import BlockSpec, RecordedBlock, run_blocks
 from faultpath.run.code import CodeState, named, system_code
@@ -126,9 +126,9 @@ def replay(
         raise UserError(
             f"library '{facts.library}' has other scenes than the run: bring its file back."
         )
-    study = plan_audit(system, chosen.spec, question, library).study
+    plan = audit_analysis(system, chosen.spec, question, library).plan
     before = outcomes_at(source.trials)
-    named = conditions or {row.condition for row in study.rows}
+    named = conditions or {row.condition for row in plan.rows}
     addresses = [at for at in before if at.scene in scenes and at.condition in named]
 
     def note(treatment: Treatment, done: int, total: int) -> None:
@@ -136,7 +136,7 @@ def replay(
         say(f"Ran {treatment.variant}, seed {treatment.seed}, again: {faults} ({done} of {total}).")
 
     with local(0) as executor:
-        trials = run_again(before, study, system, executor, addresses, note)
+        trials = run_again(before, plan, system, executor, addresses, note)
     return Replay(
         trials, changes(source.provenance, system, system_code(system, chosen.spec).state)
     )
@@ -174,13 +174,13 @@ def outcomes_at(trials: Trials) -> dict[TrialAddress, Outcome]:
 
 def run_again(
     before: Mapping[TrialAddress, Outcome],
-    study: Study,
+    plan: Plan,
     system: System,
     executor: Executor,
     trials: Iterable[TrialAddress],
     note: Callable[[Treatment, int, int], None],
 ) -> list[Replayed]:
-    """Run some trials of a study again and listen; a treatment that several conditions share runs
+    """Run some trials of a plan again and listen; a treatment that several conditions share runs
     once.
 
     Raises what makes an audit itself wrong: code that changed under way, workers that do not start.
@@ -188,8 +188,8 @@ def run_again(
     chosen = before.keys() & set(trials)
     treatments: dict[str, Treatment] = {}
     addresses: dict[str, dict[str, list[TrialAddress]]] = {}
-    for row in study.rows:
-        for scene in study.scenes:
+    for row in plan.rows:
+        for scene in plan.scenes:
             at = TrialAddress(row.variant, row.condition, row.seed, scene)
             if at in chosen:
                 treatments[key := row.treatment.key()] = row.treatment
@@ -213,7 +213,7 @@ def run_again(
                 replays[at] = Replayed(at, differs, signals)
         note(task.treatment, done, len(tasks))
 
-    built = Built.of(system, study.system, study.library)
+    built = Built.of(system, plan.system, plan.library)
     run_blocks(executor, built, tasks, handle_reply)
     return [replays[at] for at in before if at in replays]
 

@@ -3,7 +3,7 @@
 from os import PathLike
 from typing import Any
 
-from faultpath.analyses.scan.design import ScanPlan, plan_scan, ranked_sources
+from faultpath.analyses.scan.analysis import ScanAnalysis, ranked_sources, scan_analysis
 from faultpath.analyses.scan.sources import Ranking
 from faultpath.api.display import Display
 from faultpath.api.folders import SCAN, SCAN_MADE_FROM, as_text
@@ -34,15 +34,15 @@ def scan(
     if not arguments.get("trials", True):
         question, chosen, library, _ = begin("scan", ScanCall, system, arguments, progress)
         return ranked_sources(chosen.system, question, library)
-    return run("scan", ScanCall, plan_scan, _scan, system, arguments, progress)
+    return run("scan", ScanCall, scan_analysis, _scan, system, arguments, progress)
 
 
-def _scan(plan: ScanPlan, job: Job) -> ScanRun:
+def _scan(analysis: ScanAnalysis, job: Job) -> ScanRun:
     """Run the trials of a scan, conclude, and write the result.
 
     Raises `Stopped` on Ctrl-C, and `UserError` where the trials cannot be run.
     """
-    scanned, result = job.trials(plan)
-    record = plan.conclude(result.trials, result.deliveries, scanned)
+    scanned, result = job.trials(analysis)
+    record = analysis.conclude(result.trials, result.deliveries, scanned)
     write_text(job.folder / SCAN, as_text(record), job.folder)
-    return ScanRun(job.folder, record, job.finish(result, plan.system, SCAN_MADE_FROM))
+    return ScanRun(job.folder, record, job.finish(result, analysis.system, SCAN_MADE_FROM))

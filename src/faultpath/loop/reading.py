@@ -54,7 +54,7 @@ class MalformedReading(TapError):
 
 
 class NotFinite(Exception):
-    """The first reading at a tap is not finite. It costs its trial and not the study, because a
+    """The first reading at a tap is not finite. Fails the trial, not the run, because a
     fault further up may have brought it about."""
 
 

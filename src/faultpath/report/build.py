@@ -17,7 +17,7 @@ def junit(records: Sequence[DecisionRecord], conditions: Sequence[str]) -> str:
         question = record.question
         name = f"{question.repair} against {question.baseline}"
         name += f" under {question.fault}" if question.fault else ""
-        failed = sum(cell.failed for cell in record.cells)
+        failed = sum(count.failed for count in record.counts)
         cases = {
             "trials-ran": f"{failed} trials failed or are missing." if failed else "",
             "result": record.headline if record.invalid else "",

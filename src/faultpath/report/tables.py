@@ -198,16 +198,16 @@ def ended(record: DecisionRecord) -> Table:
     """Return how the trials of both versions ended under each condition."""
     question = record.question
     statuses = ("success", "crash", "timeout", "failed")
-    cells = {(cell.condition, cell.variant): cell for cell in record.cells}
-    shown = [s for s in statuses if any(getattr(cell, s) for cell in record.cells)]
+    counts = {(count.condition, count.variant): count for count in record.counts}
+    shown = [s for s in statuses if any(getattr(count, s) for count in record.counts)]
     lines: list[Line] = []
     for condition in record.conditions:
         lines.append(line(condition.title))
         for role, name in zip(_VARIANTS, (question.baseline, question.repair), strict=True):
-            if (cell := cells.get((condition.name, name))) is not None:
-                counts = (str(getattr(cell, status)) for status in shown)
-                time = () if median_time(record) else (_median(cell.median_time_s),)
-                lines.append(line(name, *counts, *time, aside=role))
+            if (count := counts.get((condition.name, name))) is not None:
+                ends = (str(getattr(count, status)) for status in shown)
+                time = () if median_time(record) else (_median(count.median_time_s),)
+                lines.append(line(name, *ends, *time, aside=role))
     time = () if median_time(record) else (f"{_MEDIAN}, s",)
     return Table(
         title="How trials ended",
@@ -219,8 +219,8 @@ def ended(record: DecisionRecord) -> Table:
 
 def median_time(record: DecisionRecord) -> str:
     """Say the median time of successes where all versions and conditions have the same."""
-    times = {_median(cell.median_time_s) for cell in record.cells}
-    same = len(record.cells) > 1 and len(times) == 1
+    times = {_median(count.median_time_s) for count in record.counts}
+    same = len(record.counts) > 1 and len(times) == 1
     return (
         f"{capital(_MEDIAN)}, of each version under every condition: {min(times)} s."
         if same

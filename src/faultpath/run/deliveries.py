@@ -6,7 +6,7 @@ from typing import Literal, Self, TypeAlias
 
 from faultpath.core.results import Result
 from faultpath.loop import TapCount, added
-from faultpath.run.plan import Study
+from faultpath.run.plan import Plan
 from faultpath.run.trials import Trials
 
 TreatmentPart: TypeAlias = tuple[str, tuple[str, ...]]
@@ -14,7 +14,7 @@ TreatmentPart: TypeAlias = tuple[str, tuple[str, ...]]
 
 
 class RowDeliveries(Result):
-    """The taps of one row of a study."""
+    """The taps of one row of a plan."""
 
     variant: str
     condition: str
@@ -24,7 +24,7 @@ class RowDeliveries(Result):
 
 
 class Deliveries(Result):
-    """The taps of a study, row by row; written as `deliveries.json`."""
+    """The taps of a plan, row by row; written as `deliveries.json`."""
 
     format: Literal[1] = 1
     rows: tuple[RowDeliveries, ...] = ()
@@ -36,13 +36,13 @@ class Deliveries(Result):
     @classmethod
     def of(
         cls,
-        study: Study,
+        plan: Plan,
         treatments: Mapping[TreatmentPart, tuple[TapCount, ...]],
         trials: Trials,
         findings: tuple[str, ...],
         repeats: bool = True,
     ) -> Self:
-        """Lay the counts out in the order of the study's rows.
+        """Lay the counts out in the order of the plan's rows.
 
         To `findings` it adds what counts and outcomes show of the declarations.
         """
@@ -53,7 +53,7 @@ class Deliveries(Result):
                 seed=r.seed,
                 taps=treatments.get((r.treatment.key(), r.scenes), ()),
             )
-            for r in study.rows
+            for r in plan.rows
         )
         reads = [(row.variant, tap) for row in rows for tap in row.taps]
         return cls(

@@ -1,4 +1,4 @@
-"""Treatments over identical scenes: what a study runs."""
+"""Treatments over identical scenes: what a plan runs."""
 
 import hashlib
 import json
@@ -54,11 +54,11 @@ class Row(Frozen):
     seed: int
     treatment: Treatment
     scenes: tuple[str, ...] = ()
-    """Those of the study in which it runs; empty: all of them. Two rows of a treatment have the
+    """Those of the plan in which it runs; empty: all of them. Two rows of a treatment have the
     same scenes, or none in common."""
 
 
-class Study(Frozen):
+class Plan(Frozen):
     """Which treatments run over which scenes."""
 
     name: str
@@ -67,7 +67,7 @@ class Study(Frozen):
     scenes: tuple[str, ...]
     rows: tuple[Row, ...]
     scenes_per_analysis: int = 0
-    """Scenes of a sequential study from one analysis of the results to the next, in the order of
+    """Scenes of a sequential plan from one analysis of the results to the next, in the order of
     `scenes`. 0 runs them all, in the blocks of their library."""
 
     def treatments(self) -> tuple[Treatment, ...]:
@@ -83,21 +83,21 @@ class Study(Frozen):
         return {scenes: tuple(treatments.values()) for scenes, treatments in parts.items()}
 
 
-def selected(study: Study, library: Library) -> tuple[SceneRef, ...]:
-    """Return the scenes of a study by index; `UserError` for an unknown, repeated or absent one."""
+def selected(plan: Plan, library: Library) -> tuple[SceneRef, ...]:
+    """Return the scenes of a plan by index; `UserError` for an unknown, repeated or absent one."""
     known = {scene.id: scene for scene in library.scenes}
-    unknown = [scene for scene in study.scenes if scene not in known]
+    unknown = [scene for scene in plan.scenes if scene not in known]
     if unknown:
         raise UserError(
             f"library {library.name!r} has no scene {unknown[0]!r}: choose from its "
             f"{len(known)} scenes, the first of which is {next(iter(known), 'none')!r}"
         )
-    if not study.scenes:
-        raise UserError(f"study {study.name!r} selects no scene: choose at least one")
-    if len(set(study.scenes)) < len(study.scenes):
-        twice = next(s for s in study.scenes if study.scenes.count(s) > 1)
-        raise UserError(f"study {study.name!r} selects scene {twice!r} twice: select it once")
-    return tuple(sorted((known[scene] for scene in study.scenes), key=lambda scene: scene.index))
+    if not plan.scenes:
+        raise UserError(f"plan {plan.name!r} selects no scene: choose at least one")
+    if len(set(plan.scenes)) < len(plan.scenes):
+        twice = next(s for s in plan.scenes if plan.scenes.count(s) > 1)
+        raise UserError(f"plan {plan.name!r} selects scene {twice!r} twice: select it once")
+    return tuple(sorted((known[scene] for scene in plan.scenes), key=lambda scene: scene.index))
 
 
 def check_rows(rows: Iterable[Row], variants: Iterable[str]) -> None:
@@ -113,7 +113,7 @@ def check_rows(rows: Iterable[Row], variants: Iterable[str]) -> None:
         address = (row.variant, row.condition, row.seed, row.scenes)
         if address in addresses:
             raise UserError(
-                f"two rows of the study are both called variant {row.variant!r}, "
+                f"two rows of the plan are both called variant {row.variant!r}, "
                 f"condition {row.condition!r}, seed {row.seed}: give them different names"
             )
         addresses.add(address)

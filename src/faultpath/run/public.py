@@ -2,7 +2,7 @@
 
 from faultpath.run.deliveries import Deliveries, RowDeliveries
 from faultpath.run.pairing import Group, PairingRefused, Pairs, pair
-from faultpath.run.plan import Row, Study, SystemSpec, Treatment
+from faultpath.run.plan import Plan, Row, SystemSpec, Treatment
 from faultpath.run.registry import load_system, system_options
 from faultpath.run.shown import SystemShown, VariantShown, system_shown
 from faultpath.run.trials import Trial, Trials
@@ -12,9 +12,9 @@ __all__ = [
     "Group",
     "PairingRefused",
     "Pairs",
+    "Plan",
     "Row",
     "RowDeliveries",
-    "Study",
     "SystemShown",
     "SystemSpec",
     "Treatment",

@@ -239,12 +239,12 @@ def hardly_acted(record: AuditResult) -> Iterator[str]:
         condition.name: (condition.baseline_readers, condition.readers)
         for condition in record.conditions
     }
-    for cell in record.cells:
-        readers = faulted[cell.condition][cell.variant == record.question.repair]
-        if cell.condition in acted and readers and 2 * cell.altered_trials < cell.trials:
+    for count in record.counts:
+        readers = faulted[count.condition][count.variant == record.question.repair]
+        if count.condition in acted and readers and 2 * count.altered_trials < count.trials:
             yield (
-                f"{capital(where(cell.condition))}, the fault changed something in only "
-                f"{cell.altered_trials} of {cell.trials} trials of {cell.variant}."
+                f"{capital(where(count.condition))}, the fault changed something in only "
+                f"{count.altered_trials} of {count.trials} trials of {count.variant}."
             )
 
 

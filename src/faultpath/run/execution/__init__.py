@@ -1,1 +1,1 @@
-"""Where the treatments of a study run, and how a run survives whatever happens to it."""
+"""Where the treatments of a plan run, and how a run survives whatever happens to it."""

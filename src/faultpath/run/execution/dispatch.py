@@ -1,4 +1,4 @@
-"""The tasks of a study on the workers of an executor, and what a worker does for them."""
+"""The tasks of a plan on the workers of an executor, and what a worker does for them."""
 
 import math
 import os

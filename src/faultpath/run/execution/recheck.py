@@ -76,8 +76,8 @@ def _gaps(first: Sequence[Outcome], again: Done) -> dict[str, dict[str, float]]:
 class _Kept(Frozen):
     """Contents of `rechecks.json`."""
 
-    format: Literal[4] = 4
-    flown: tuple[Recheck, ...] = ()
+    format: Literal[5] = 5
+    rechecks: tuple[Recheck, ...] = ()
 
 
 class Rechecks:
@@ -94,7 +94,7 @@ class Rechecks:
         with suppress(OSError, Misread):
             kept = model_of(contents(folder.rechecks, LARGEST_TEXT), _Kept)
         self._kept = {
-            (recheck.unit, recheck.why, recheck.scenes): recheck for recheck in kept.flown
+            (recheck.unit, recheck.why, recheck.scenes): recheck for recheck in kept.rechecks
         }
 
     def tasks(self) -> tuple[Task, ...]:
@@ -159,17 +159,17 @@ class Rechecks:
             differs="" if wrote else difference(first, reply),
             other=other,
         )
-        kept = _Kept(flown=tuple(recheck for _, recheck in sorted(self._kept.items())))
+        kept = _Kept(rechecks=tuple(recheck for _, recheck in sorted(self._kept.items())))
         self._folder.save_rechecks(f"{kept.model_dump_json(indent=1)}\n")
 
-    def flown(self) -> tuple[Recheck, ...]:
+    def of_this_run(self) -> tuple[Recheck, ...]:
         """Return what ran again of the units of this run."""
         keys = {unit.key for unit in self._units}
         return tuple(shown for _, shown in sorted(self._kept.items()) if shown.unit in keys)
 
     def findings(self) -> Iterator[str]:
         """Yield what second runs of this run's units found; nothing where all were the same."""
-        for shown in self.flown():
+        for shown in self.of_this_run():
             where = f"'{shown.variant}' under {shown.faults}, seed {shown.seed}"
             if shown.wrote:
                 yield (

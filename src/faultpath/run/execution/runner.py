@@ -1,4 +1,4 @@
-"""Run a study into a folder, from wherever an earlier invocation left it."""
+"""Run a plan into a folder, from wherever an earlier invocation left it."""
 
 import logging
 from collections.abc import Callable, Iterator, Sequence
@@ -15,9 +15,9 @@ from faultpath.run.deliveries import Deliveries
 from faultpath.run.execution.dispatch import Built, dispatch
 from faultpath.run.execution.recheck import Rechecks
 from faultpath.run.execution.repeating import repeat
-from faultpath.run.execution.schedule import Task, TaskQueue, Unit, plan
+from faultpath.run.execution.schedule import Task, TaskQueue, Unit, units_of
 from faultpath.run.execution.state import RunState, Stop
-from faultpath.run.plan import Study, Treatment, check_rows, selected
+from faultpath.run.plan import Plan, Treatment, check_rows, selected
 from faultpath.run.provenance import Recheck
 from faultpath.run.registry import load_system
 from faultpath.run.store.folder import RunFolder
@@ -68,8 +68,8 @@ class RunResult:
         return self.deliveries.findings
 
 
-def run_study(
-    study: Study,
+def run_plan(
+    plan: Plan,
     folder: Path | str,
     workers: int = 2,
     progress: Callable[[Progress], None] = lambda report: None,
@@ -81,57 +81,57 @@ def run_study(
     recheck: bool = True,
     stop: Stop | None = None,
 ) -> RunResult:
-    """Run every treatment of a study over its scenes, keeping what `folder` already holds.
+    """Run every treatment of a plan over its scenes, keeping what `folder` already holds.
 
     Args:
-        study: Treatments and scenes.
+        plan: Treatments and scenes.
         folder: Run folder.
         workers: Worker processes; 0 runs in this one.
         progress: Called after each block and about twice a second.
         notice: Called with what a user should read, such as a damaged file or another process in
             the folder.
         system: Saves building it here when the caller has.
-        shared: Lets studies with other treatments use the folder one after the other: a treatment
+        shared: Lets plans with other treatments use the folder one after the other: a treatment
         that one of
             them ran is there for the next; the folder's tables are those of the last.
-        executor: Runs trials in place of `workers` processes, and keeps its own for the next study.
+        executor: Runs trials in place of `workers` processes, and keeps its own for the next plan.
         time_limit_s: Seconds that a worker may take over one block, or one scene of a block that
             failed, before it is stopped; by default what the system says, or an hour.
         recheck: Runs a few scenes again and compares; see `RunResult.findings`.
-        stop: Asked at each analysis of a study that has some, and ends it; the result holds the
+        stop: Asked at each analysis of a plan that has some, and ends it; the result holds the
             scenes up to that analysis.
 
     Raises:
-        UserError: The folder or the study cannot be run.
+        UserError: The folder or the plan cannot be run.
         Stopped: Ctrl-C; everything finished is stored.
         Exception: An error of `faultpath.loop.taps`, when the audit itself is wrong.
     """
     manager = local(workers) if executor is None else nullcontext(executor)
     if (workers if executor is None else executor.count) == 0 and time_limit_s is not None:
         raise UserError("a time limit needs worker processes: this one cannot stop itself")
-    system = load_system(study.system) if system is None else system
-    built = Built.of(system, study.system, study.library)
+    system = load_system(plan.system) if system is None else system
+    built = Built.of(system, plan.system, plan.library)
     built.check_files()
     library, code = built.library, built.code
     manifest = Manifest(
         faultpath_version=__version__,
         code=code.state,
         library_hash=library.content_hash,
-        study=study,
+        plan=plan,
     )
     run = RunFolder(Path(folder))
-    units, earlier = _units(study, built, manifest), run.made_by_other_code(manifest)
+    units, earlier = _units(plan, built, manifest), run.made_by_other_code(manifest)
     try:
         with manager as workforce:
             work = partial(dispatch, workforce, built, _attempted, limit_s=time_limit_s)
-            of_it = _units(study, built, earlier) if earlier else ()
+            of_it = _units(plan, built, earlier) if earlier else ()
             if earlier and (blocks := run.finished((unit.key, unit.scenes) for unit in of_it)):
                 manifest, units = earlier, of_it
                 changed = named(earlier.code.changed(code.state)) or "faultpath"
                 notice(repeat(blocks, units, run, work, changed))
-            state = RunState(study, library, units, run, stop)
+            state = RunState(plan, library, units, run, stop)
             with run.open(manifest, notice, shared):
-                schedule = TaskQueue(state.resume(notice), study.scenes_per_analysis > 0)
+                schedule = TaskQueue(state.resume(notice), plan.scenes_per_analysis > 0)
                 progress(state.progress())
                 work(
                     lambda worker: None if state.enough() else schedule.take(worker),
@@ -143,8 +143,8 @@ def run_study(
                     waiting = iter(again.tasks())
                     work(lambda worker: next(waiting, None), again.handle_reply)
                 trials, findings = state.trials(), (*state.findings(), *again.findings())
-                repeats = not any(recheck.differs for recheck in again.flown())
-                deliveries = Deliveries.of(study, state.taps(), trials, findings, repeats)
+                repeats = not any(recheck.differs for recheck in again.of_this_run())
+                deliveries = Deliveries.of(plan, state.taps(), trials, findings, repeats)
                 digest = run.save_tables(trials, deliveries)
     except KeyboardInterrupt:
         # What is on disk counts: the run may have been stopped between storing and noting.
@@ -163,27 +163,27 @@ def run_study(
         system_fingerprint=manifest.code.digest,
         code=(code,) if manifest.code == code.state else (),
         library_hash=library.content_hash,
-        rechecks=again.flown(),
+        rechecks=again.of_this_run(),
     )
 
 
-def _units(study: Study, built: Built, manifest: Manifest) -> tuple[Unit, ...]:
-    """Return the blocks that a study takes, run by the code of `manifest`.
+def _units(plan: Plan, built: Built, manifest: Manifest) -> tuple[Unit, ...]:
+    """Return the blocks that a plan takes, run by the code of `manifest`.
 
     `UserError` for scenes or rows that cannot be run.
     """
     library, system = built.library, built.system
-    scenes: Sequence[SceneRef] = selected(study, library)
-    if study.scenes_per_analysis:
-        scenes = sorted(scenes, key=lambda scene: study.scenes.index(scene.id))
-    check_rows(study.rows, system.variants)
+    scenes: Sequence[SceneRef] = selected(plan, library)
+    if plan.scenes_per_analysis:
+        scenes = sorted(scenes, key=lambda scene: plan.scenes.index(scene.id))
+    check_rows(plan.rows, system.variants)
     fingerprint = f"{manifest.faultpath_version} {manifest.code.digest}"
     size = system.scenes_a_block(len(library.scenes))
     units: list[Unit] = []
-    for part, treatments in study.parts().items():
+    for part, treatments in plan.parts().items():
         chosen = [scene for scene in scenes if scene.id in part] if part else scenes
-        units += plan(
-            treatments, chosen, size, library, fingerprint, study.scenes_per_analysis, part
+        units += units_of(
+            treatments, chosen, size, library, fingerprint, plan.scenes_per_analysis, part
         )
     return tuple(units)
 

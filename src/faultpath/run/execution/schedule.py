@@ -26,7 +26,7 @@ class Unit:
     """Scenes that its rows name; empty where they name none."""
 
 
-def plan(
+def units_of(
     treatments: Sequence[Treatment],
     scenes: Sequence[SceneRef],
     block_size: int,

@@ -11,7 +11,7 @@ from faultpath.loop import TapCount, added
 from faultpath.run.attempt import Died, Done, Raised, Reply, Wrong
 from faultpath.run.deliveries import TreatmentPart
 from faultpath.run.execution.schedule import Task, Unit
-from faultpath.run.plan import Study, selected
+from faultpath.run.plan import Plan, selected
 from faultpath.run.store.folder import RunFolder
 from faultpath.run.trials import Trial, Trials
 from faultpath.run.work.executor import Progress
@@ -19,7 +19,7 @@ from faultpath.system.declared import Library
 from faultpath.system.outcome import Outcome, failed_outcome
 
 FEW = 5
-"""So many failed trials without one that ran to its end stop the study."""
+"""So many failed trials without one that ran to its end end the run."""
 _WHOLE = "All scenes of the block at once: "
 """Begins the traceback of a block that raised an error, of which each scene is then run alone."""
 Stop = Callable[[Trials], bool]
@@ -42,13 +42,13 @@ class _Partial:
 class RunState:
     """Stores each unit as soon as all its scenes have an outcome.
 
-    The analyses of a study are made in order, each as soon as all of its trials are there: the same
+    The analyses of a plan are made in order, each as soon as all of its trials are there: the same
     trials count whatever the number of workers, and wherever a run was interrupted.
     """
 
     def __init__(
         self,
-        study: Study,
+        plan: Plan,
         library: Library,
         units: tuple[Unit, ...],
         folder: RunFolder,
@@ -58,8 +58,8 @@ class RunState:
         """By treatment key and scene."""
         self.kept = self.computed = 0
         """Units that were stored before, and those that this invocation ran."""
-        self._study, self._library, self._units, self._folder = study, library, units, folder
-        self._rows = Counter((row.treatment.key(), row.scenes) for row in study.rows)
+        self._plan, self._library, self._units, self._folder = plan, library, units, folder
+        self._rows = Counter((row.treatment.key(), row.scenes) for row in plan.rows)
         self._taps: dict[str, tuple[TapCount, ...]] = {}
         self._partial: dict[str, _Partial] = {}
         self._began, self._ended = time.monotonic(), 0
@@ -68,7 +68,7 @@ class RunState:
         self._done = self._done_in_rows = 0
         """Trials with an outcome, and in how many of the rows' trials they stand."""
         self._failed, self._sound = 0, False
-        self._stop = stop if study.scenes_per_analysis else None
+        self._stop = stop if plan.scenes_per_analysis else None
         self._analyses, self._over = 0, False
 
     def resume(self, notice: Callable[[str], None]) -> list[Unit]:
@@ -181,7 +181,7 @@ class RunState:
         self._done_in_rows += trials * self._rows[unit.treatment_key, unit.part]
 
     def enough(self) -> bool:
-        """Take the analyses whose trials are all there; return whether the study stops."""
+        """Take the analyses whose trials are all there; return whether the run stops."""
         while self._stop and not self._over:
             batch = [unit.key for unit in self._units if unit.block == self._analyses]
             if not batch or not self._taps.keys() >= set(batch):
@@ -192,11 +192,11 @@ class RunState:
 
     def trials(self) -> Trials:
         """Return the trials that count: all, or those of the analyses that were made."""
-        study = self._study
+        plan = self._plan
         if self._stop:
-            scenes = study.scenes[: self._analyses * study.scenes_per_analysis]
-            study = study.model_copy(update={"scenes": scenes})
-        return _assembled(study, self._library, self.outcomes)
+            scenes = plan.scenes[: self._analyses * plan.scenes_per_analysis]
+            plan = plan.model_copy(update={"scenes": scenes})
+        return _assembled(plan, self._library, self.outcomes)
 
     @property
     def units(self) -> tuple[Unit, ...]:
@@ -219,14 +219,12 @@ class RunState:
         return Progress(self._done, self._trials, count, left)
 
 
-def _assembled(
-    study: Study, library: Library, outcomes: Mapping[tuple[str, str], Outcome]
-) -> Trials:
-    """Return the outcomes, by treatment key and scene, in the order of the study's rows."""
-    scenes, trials = selected(study, library), list[Trial]()
-    for row in study.rows:
+def _assembled(plan: Plan, library: Library, outcomes: Mapping[tuple[str, str], Outcome]) -> Trials:
+    """Return the outcomes, by treatment key and scene, in the order of the plan's rows."""
+    scenes, trials = selected(plan, library), list[Trial]()
+    for row in plan.rows:
         where, key = (row.variant, row.condition, row.seed), row.treatment.key()
-        part = frozenset(row.scenes or study.scenes)
+        part = frozenset(row.scenes or plan.scenes)
         here = (scene for scene in scenes if scene.id in part)
         trials += [Trial(*where, s.index, s.topology, outcomes[key, s.id]) for s in here]
     return Trials.of(trials)

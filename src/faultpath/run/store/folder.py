@@ -42,7 +42,7 @@ def keyed(place: Path, name: str, code: CodeState) -> Path:
 class RunFolder:
     """The folder of one run.
 
-    `manifest.json` says which study it is, `shards/` holds one Parquet file a finished block,
+    `manifest.json` says which plan it is, `shards/` holds one Parquet file a finished block,
     `failures/` the tracebacks of trials that failed, and `outcomes.parquet` and `traces.parquet`
     are assembled at the end, with what the taps did in `deliveries.json`. Everything is written
     atomically.
@@ -64,7 +64,7 @@ class RunFolder:
     ) -> Generator[None, None, None]:
         """Create or continue the run, alone in the folder until the end of the `with` block.
 
-        `shared` lets studies with other treatments use the folder one after the other. `UserError`
+        `shared` lets plans with other treatments use the folder one after the other. `UserError`
         when the folder cannot be written, or holds something else.
         """
         if not self.manifest.exists():  # nothing is left in a folder of somebody else
@@ -187,7 +187,7 @@ def read_outcomes(path: Path) -> Trials:
     try:
         return decode_outcomes(read_regular(path))
     except Unreadable as error:
-        raise UserError(f"{path} is damaged ({error}): run the study again to rebuild it") from None
+        raise UserError(f"{path} is damaged ({error}): run the same again to rebuild it") from None
 
 
 def read_regular(path: Path) -> bytes:

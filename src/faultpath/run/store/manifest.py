@@ -1,4 +1,4 @@
-"""The study of a run folder, and whether the folder may go on with the one that is asked for."""
+"""The plan of a run folder, and whether the folder may go on with the one that is asked for."""
 
 import json
 from pathlib import Path
@@ -9,21 +9,21 @@ from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.plain import Misread, model_of, read_json
 from faultpath.core.results import Frozen
 from faultpath.run.code import CodeState, named
-from faultpath.run.plan import Study
+from faultpath.run.plan import Plan
 
-FORMAT = 2
+FORMAT = 3
 """Version of the folder's layout and of its columns."""
 
 
 class Manifest(Frozen):
-    """The study of a run folder and the exact system and scenes that it was run with."""
+    """The plan of a run folder and the exact system and scenes that it was run with."""
 
     format: int = FORMAT
     faultpath_version: str
     code: CodeState
     """Source files, data files, packages."""
     library_hash: str
-    study: Study
+    plan: Plan
 
     def encode(self) -> bytes:
         """Return the file's contents."""
@@ -52,29 +52,29 @@ def read_manifest(path: Path) -> Manifest | None:
 
 
 def check_same(folder: Path, previous: Manifest, manifest: Manifest, shared: bool = False) -> None:
-    """Raise `UserError` unless `folder` may go on with the study that is asked for.
+    """Raise `UserError` unless `folder` may go on with the plan that is asked for.
 
     The selection of scenes may differ: a quick look at some scenes grows into the whole library
-    in the same folder, and keeps what it has. In a folder that rounds of one study share, their
+    in the same folder, and keeps what it has. In a folder that rounds of one plan share, their
     treatments may differ as well.
     """
-    same_study = (
-        ("set of variants, faults or seeds", previous.study.rows, manifest.study.rows),
+    same_plan = (
+        ("set of variants, faults or seeds", previous.plan.rows, manifest.plan.rows),
         (
             "number of scenes from analysis to analysis",
-            previous.study.scenes_per_analysis,
-            manifest.study.scenes_per_analysis,
+            previous.plan.scenes_per_analysis,
+            manifest.plan.scenes_per_analysis,
         ),
     )
     differences = [
         what
         for what, one, two in (
             ("version of faultpath", previous.faultpath_version, manifest.faultpath_version),
-            ("name", previous.study.name, manifest.study.name),
-            ("system", previous.study.system, manifest.study.system),
-            ("library", previous.study.library, manifest.study.library),
+            ("name", previous.plan.name, manifest.plan.name),
+            ("system", previous.plan.system, manifest.plan.system),
+            ("library", previous.plan.library, manifest.plan.library),
             ("state of the library", previous.library_hash, manifest.library_hash),
-            *(() if shared else same_study),
+            *(() if shared else same_plan),
         )
         if one != two
     ]
@@ -87,6 +87,6 @@ def check_same(folder: Path, previous: Manifest, manifest: Manifest, shared: boo
         )
     if differences:
         raise UserError(
-            f"{folder} holds the run of another study, with another {differences[0]}: choose a "
-            "new folder, or repeat the command that made this one"
+            f"{folder} holds another run, with another {differences[0]}: choose a new folder, or "
+            "repeat the command that made this one"
         )

@@ -50,7 +50,7 @@ _TAP_COUNTS = TypeAdapter(tuple[TapCount, ...])
 
 
 class TrialAddress(NamedTuple):
-    """Where a trial stands in a study."""
+    """Where a trial stands in a plan."""
 
     variant: str
     condition: str
@@ -145,7 +145,7 @@ def traces_of(trials: Trials) -> dict[TrialAddress, Trace]:
 
 
 def address_of(trials: Trials, row: int) -> TrialAddress:
-    """Return where a trial stands in its study."""
+    """Return where a trial stands in its plan."""
     place: list[int] = trials.places[row].tolist()
     variant, condition, seed, scene = place
     return TrialAddress(

@@ -6,9 +6,9 @@ from typing import Any
 import pytest
 import yaml
 
+from faultpath.analyses.audit import audit_analysis
+from faultpath.analyses.map.analysis import MapAnalysis, map_analysis
 from faultpath.analyses.map.lattice import UNITS
-from faultpath.analyses.map.study import MapPlan, plan_map
-from faultpath.analyses.planning import plan_audit
 from faultpath.core.errors import UserError
 from faultpath.faults import FaultText
 from faultpath.run import SystemSpec, load_system
@@ -28,25 +28,25 @@ ASKED: dict[str, Any] = {
 }
 
 
-def plan(**given: Any) -> MapPlan:
-    return plan_map(TOY, SPEC, ask(MapQuestion, ASKED | given), library_of(TOY, "carts"))
+def analysis(**given: Any) -> MapAnalysis:
+    return map_analysis(TOY, SPEC, ask(MapQuestion, ASKED | given), library_of(TOY, "carts"))
 
 
 def test_the_conditions_of_an_audit_are_points_of_the_map() -> None:
     """To the treatment, so that both would be the same trials."""
     fault = FaultText.read("gain:scale=0.6")
     question = AuditQuestion(baseline="calibrated", repair="blind", fault=fault, scenes=8)
-    audit = plan_audit(TOY, SPEC, question, library_of(TOY, "carts"))
+    audit = audit_analysis(TOY, SPEC, question, library_of(TOY, "carts"))
     points = [(0, 0), (-UNITS, 0), (0, -UNITS), (-UNITS, -UNITS)]
     names = dict(zip(("correct", "controller", "observer", "shared"), points, strict=True))
-    made = plan()
-    treatments = {(row.variant, row.condition): row.treatment for row in made.study(points).rows}
-    for row in audit.study.rows:
+    made = analysis()
+    treatments = {(row.variant, row.condition): row.treatment for row in made.plan(points).rows}
+    for row in audit.plan.rows:
         assert treatments[row.variant, made.condition(names[row.condition])] == row.treatment
 
 
 def test_errors_of_unequal_size_strike_each_its_own_module() -> None:
-    rows = plan().study([(8, -16)]).rows
+    rows = analysis().plan([(8, -16)]).rows
     faulted = {
         (row.variant, fault.readers, fault.intervention.factor)  # type: ignore[union-attr] - a scale
         for row in rows
@@ -64,10 +64,10 @@ def test_an_offset_is_in_the_unit_of_the_reading() -> None:
     system = load_system(dock)
     question = {"baseline": "wheels", "repair": "ranges", "fault": "range:offset,onset=5"}
     question |= {"against": ("approach", "speedometer"), "up_to": 0.5, "scenes": 4}
-    planned = plan_map(system, dock, ask(MapQuestion, question), library_of(system, "floors"))
+    planned = map_analysis(system, dock, ask(MapQuestion, question), library_of(system, "floors"))
     assert not planned.facts.relative
     assert planned.facts.size_label(-0.25) == "−0.25 m"
-    (fault,) = planned.study([(0, 16)]).rows[1].treatment.faults
+    (fault,) = planned.plan([(0, 16)]).rows[1].treatment.faults
     assert (fault.onset_step, fault.intervention.by) == (5, 0.25)  # type: ignore[union-attr] - a bias
 
 
@@ -77,6 +77,6 @@ MISTAKES = yaml.safe_load(Path(__file__).with_name("mistakes.yaml").read_text("u
 @pytest.mark.parametrize(("given", "said"), MISTAKES)
 def test_a_mistake_is_one_sentence(given: dict[str, Any], said: str) -> None:
     with pytest.raises(UserError) as refused:
-        plan(**given)
+        analysis(**given)
     assert said in str(refused.value)
     assert "\n" not in str(refused.value)

@@ -27,7 +27,7 @@ from faultpath.analyses.scan.sources import Candidate, Ranking, candidates
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
 from faultpath.faults import at_readers
-from faultpath.run import Deliveries, Row, Study, SystemSpec, Trials
+from faultpath.run import Deliveries, Plan, Row, SystemSpec, Trials
 from faultpath.run.question import ScanQuestion
 from faultpath.stats.cancelling import fewest_scenes
 from faultpath.system.declared import Library, Variant
@@ -45,7 +45,7 @@ HALVINGS = 3
 
 
 @dataclass(frozen=True)
-class ScanPlan(Analysis[Scanned]):
+class ScanAnalysis(Analysis[Scanned]):
     """A question about the errors of a system's inputs, and the trials that answer it."""
 
     noun = "conditions"
@@ -60,12 +60,36 @@ class ScanPlan(Analysis[Scanned]):
     others: tuple[str, ...] = field(repr=False)
     """Scenes that are left for the second."""
 
+    def check_scenes(self) -> None:
+        """Raise `UserError` where scenes or trials are fewer than the correction needs."""
+        errors, pairs, _ = most_conditions(self.errors)
+        if not pairs:
+            raise UserError(
+                f"{self.system.name}: {listed({error.source for error in self.errors})} has one "
+                "reader, so no two errors can act together: give the error of another source with "
+                "--fault."
+            )
+        least = fewest_scenes(errors, pairs)
+        needed = FIRST_SCENES + least
+        if len(self.others) < least:
+            raise UserError(
+                f"{len(self.first) + len(self.others)} scenes of '{self.facts.library}' are too "
+                f"few for a scan of {len(self.errors)} errors: {FIRST_SCENES} choose errors and "
+                f"{least} others test up to {pairs} pairs, so {needed} would do."
+            )
+        trials = self.trials(least)
+        if self.question.scenes is None and trials > TRIALS:
+            raise UserError(
+                f"a scan of {len(self.errors)} errors takes {trials} trials at least, and {TRIALS} "
+                f"are run unless you say so: give --scenes {needed} or more."
+            )
+
     def rounds(self) -> Rounds[Scanned]:
         """Yield each error alone, then with halved sizes, and then the pairs in other scenes."""
         errors, tried, sizes = self.errors, list(self.errors), [self.errors]
         # In scenes of the first stage, however many the second has.
         most = max(1 + len(tried), round(self.expected() / (self.per_scene * len(self.first))))
-        trials = yield Round(self.study(tried), 1 + len(tried), most, self.notice())
+        trials = yield Round(self.plan(tried), 1 + len(tried), most, self.notice())
         for _ in range(HALVINGS):
             costly = self.costly(errors, trials)
             if not costly:
@@ -73,14 +97,14 @@ class ScanPlan(Analysis[Scanned]):
             errors = tuple(halved(e) if (e.source, e.sign) in costly else e for e in errors)
             sizes.append(errors)
             tried += [error for error in errors if error not in tried]
-            trials = yield Round(self.study(tried), 1 + len(tried), most)
+            trials = yield Round(self.plan(tried), 1 + len(tried), most)
         errors = self.largest_that_hurts(sizes, trials)
         chosen = going_on(self.question, errors, trials, self.first)
         scanned = self.second_stage(tuple(tried), errors, chosen)
         conditions = scanned.conditions
         if len(conditions) > 1:
             count = 1 + len(tried) + len(conditions)
-            yield Round(self.study(tried, scanned), count, count)
+            yield Round(self.plan(tried, scanned), count, count)
         return scanned
 
     @property
@@ -160,8 +184,8 @@ class ScanPlan(Analysis[Scanned]):
             f"{self.expected()} trials in all at most."
         )
 
-    def study(self, tried: Iterable[ScanError], scanned: Scanned | None = None) -> Study:
-        """Return the study of the first stage, or of both."""
+    def plan(self, tried: Iterable[ScanError], scanned: Scanned | None = None) -> Plan:
+        """Return the plan of the first stage, or of both."""
         rows, scenes = list[Row](self._rows((), self.first)), self.first
         for error in tried:
             rows += self._rows((error,), self.first)
@@ -169,7 +193,7 @@ class ScanPlan(Analysis[Scanned]):
             for places in scanned.conditions:
                 rows += self._rows([scanned.errors[place] for place in places], scanned.second)
             scenes += scanned.second
-        return Study(
+        return Plan(
             name=self.named[0],
             system=self.spec,
             library=self.facts.library,
@@ -191,13 +215,13 @@ class ScanPlan(Analysis[Scanned]):
         return concluded(self.question, self.facts, self.ranking, items, trials, deliveries)
 
 
-def plan_scan(
+def scan_analysis(
     system: System,
     spec: SystemSpec,
     request: ScanQuestion,
     library: Library,
     known: Ranking | None = None,
-) -> ScanPlan:
+) -> ScanAnalysis:
     """Lay out the first stage, and rank the sources where their ranking is not known.
 
     Raises `UserError` for an unknown variant, one that is both, a fault that a scan cannot take,
@@ -219,7 +243,7 @@ def plan_scan(
         *faults,
         PurePath(library.name).stem,
     )
-    plan = ScanPlan(
+    analysis = ScanAnalysis(
         question=question_of(request, ScanQuestion, spec),
         facts=facts,
         system=system,
@@ -230,12 +254,12 @@ def plan_scan(
         first=chosen[:FIRST_SCENES],
         others=chosen[FIRST_SCENES:],
     )
-    _check_scenes(plan)
-    return replace(plan, ranking=known or ranked_sources(system, request, library))
+    analysis.check_scenes()
+    return replace(analysis, ranking=known or ranked_sources(system, request, library))
 
 
 def ranked_sources(system: System, request: ScanQuestion, library: Library) -> Ranking:
-    """Return the sources that may err, ranked; `UserError` as `plan_scan`."""
+    """Return the sources that may err, ranked; `UserError` as `scan_analysis`."""
     variants = _variants(system, request)
     every = candidates(system, variants, request.fault)
     scenes = scenes_of(library, min(PROBED_SCENES, len(library.scenes)))
@@ -245,31 +269,6 @@ def ranked_sources(system: System, request: ScanQuestion, library: Library) -> R
         sources=ranking(system, variants, every, scenes, request.seeds[0]),
         probed=len(scenes) if isinstance(system, LoopSystem) else 0,
     )
-
-
-def _check_scenes(plan: ScanPlan) -> None:
-    """Raise `UserError` where scenes or trials are fewer than the correction needs."""
-    errors, pairs, _ = most_conditions(plan.errors)
-    if not pairs:
-        raise UserError(
-            f"{plan.system.name}: {listed({error.source for error in plan.errors})} has one "
-            "reader, so no two errors can act together: give the error of another source with "
-            "--fault."
-        )
-    least = fewest_scenes(errors, pairs)
-    needed = FIRST_SCENES + least
-    if len(plan.others) < least:
-        raise UserError(
-            f"{len(plan.first) + len(plan.others)} scenes of '{plan.facts.library}' are too few "
-            f"for a scan of {len(plan.errors)} errors: {FIRST_SCENES} choose errors and {least} "
-            f"others test up to {pairs} pairs, so {needed} would do."
-        )
-    trials = plan.trials(least)
-    if plan.question.scenes is None and trials > TRIALS:
-        raise UserError(
-            f"a scan of {len(plan.errors)} errors takes {trials} trials at least, and {TRIALS} are "
-            f"run unless you say so: give --scenes {needed} or more."
-        )
 
 
 def _variants(system: System, request: ScanQuestion) -> tuple[Variant, ...]:

@@ -1,9 +1,9 @@
-"""Studies of the toy system."""
+"""Plans of the toy system."""
 
 from pathlib import Path
 
 from faultpath.faults import Fault, Scale
-from faultpath.run.plan import Row, Study, SystemSpec, Treatment
+from faultpath.run.plan import Plan, Row, SystemSpec, Treatment
 
 SYSTEM = f"{Path(__file__).with_name('toy_system.py')}:create"
 SCENES = tuple(f"s{i:02d}" for i in range(10))
@@ -39,8 +39,8 @@ def rows() -> tuple[Row, ...]:
     )
 
 
-def study(scenes: tuple[str, ...] = SCENES, name: str = "toy", **options: str) -> Study:
-    return Study(
+def plan(scenes: tuple[str, ...] = SCENES, name: str = "toy", **options: str) -> Plan:
+    return Plan(
         name=name,
         system=SystemSpec(name=SYSTEM, options=options),
         library="ten",
@@ -49,10 +49,8 @@ def study(scenes: tuple[str, ...] = SCENES, name: str = "toy", **options: str) -
     )
 
 
-def study_of(
-    factory: str, scenes: tuple[str, ...] = SCENES, count: int = 1, **options: str
-) -> Study:
-    """Return the first rows of a study whose system this factory, `FILE:NAME`, builds."""
-    whole = study(scenes, **options)
+def plan_of(factory: str, scenes: tuple[str, ...] = SCENES, count: int = 1, **options: str) -> Plan:
+    """Return the first rows of a plan whose system this factory, `FILE:NAME`, builds."""
+    whole = plan(scenes, **options)
     system = whole.system.model_copy(update={"name": factory})
     return whole.model_copy(update={"system": system, "rows": whole.rows[:count]})

@@ -21,7 +21,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.text import listed
 from faultpath.faults import Fault, FaultText, at_readers, describe, reaching
 from faultpath.interface import module_of
-from faultpath.run import Deliveries, Row, Study, SystemSpec, Trials
+from faultpath.run import Deliveries, Plan, Row, SystemSpec, Trials
 from faultpath.run.pairing import mismatch_words
 from faultpath.run.question import MapQuestion
 from faultpath.system.declared import Library, Variant
@@ -36,7 +36,7 @@ _BISECTING = 18
 
 
 @dataclass(frozen=True)
-class MapPlan(Analysis[list[Point]]):
+class MapAnalysis(Analysis[list[Point]]):
     """A question about two errors, and the trials that answer it at any points."""
 
     noun = "pairs of errors"
@@ -52,22 +52,22 @@ class MapPlan(Analysis[list[Point]]):
         """Yield the coarse lattice, then with it points where no difference is significant."""
         question, points = self.question, list(lattice(COARSE))
         expected = question.points + _BISECTING
-        study = self.study(points)
-        first = len(study.rows) * len(self.scenes)
+        plan = self.plan(points)
+        first = len(plan.rows) * len(self.scenes)
         notice = (
             f"{len(points)} pairs of errors first, {first} trials; then more where no difference "
             f"is significant, about {round(first * max(1.0, expected / len(points)))} trials at "
             "most."
         )
         while True:
-            table = yield Round(study, len(points), expected, notice)
+            table = yield Round(plan, len(points), expected, notice)
             differences, _ = self.differences(points, table)
             modules, most, drawn = self.facts.modules, question.points, self.facts.library_hash
             new = next_points(differences, modules, most, drawn)
             if not new:
                 return points
             points += new
-            study, notice = self.study(points), ""
+            plan, notice = self.plan(points), ""
 
     def conclude(self, trials: Trials, deliveries: Deliveries, items: Sequence[Point]) -> MapRecord:
         """Return the record of a map, to the bit the same in whatever order its points were run.
@@ -88,10 +88,10 @@ class MapPlan(Analysis[list[Point]]):
         sizes = (f"{self.facts.size(units):+.6g}" for units in point)
         return ",".join(sizes) if any(point) else CORRECT
 
-    def study(self, points: Sequence[Point]) -> Study:
-        """Return the study of all points. Variants that a fault cannot reach run once.
+    def plan(self, points: Sequence[Point]) -> Plan:
+        """Return the plan of all points. Variants that a fault cannot reach run once.
 
-        Equal errors are one fault that is shared, as in an audit. Studies have the same name
+        Equal errors are one fault that is shared, as in an audit. Plans have the same name
         whatever spread or number of points is asked for.
         """
         question, facts, rows = self.question, self.facts, list[Row]()
@@ -108,7 +108,7 @@ class MapPlan(Analysis[list[Point]]):
             for name in (question.baseline, question.repair):
                 parts = at_readers(faults, self.system.variants[name].readers)
                 rows += rows_of(self.condition(point), {name: parts}, question.seeds)
-        return Study(
+        return Plan(
             name=self.named[0],
             system=self.spec,
             library=facts.library,
@@ -139,7 +139,9 @@ class MapPlan(Analysis[list[Point]]):
         return Differences(tuple(points), repair, baseline), mismatch_words(comparison.mismatches)
 
 
-def plan_map(system: System, spec: SystemSpec, request: MapQuestion, library: Library) -> MapPlan:
+def map_analysis(
+    system: System, spec: SystemSpec, request: MapQuestion, library: Library
+) -> MapAnalysis:
     """Lay out a map. `UserError` for anything that cannot be run or means nothing."""
     variants, interface = two_variants(system, request), system.interface
     fault = _without_size(system, request.fault)
@@ -180,7 +182,7 @@ def plan_map(system: System, spec: SystemSpec, request: MapQuestion, library: Li
     question = question_of(request, MapQuestion, spec)
     name = f"{spec.name}-map-{request.repair}-vs-{request.baseline}"
     named = (name, str(request.fault), *modules, f"{largest:g}", PurePath(request.library).stem)
-    return MapPlan(question, system, named, facts, spec, fault, chosen)
+    return MapAnalysis(question, system, named, facts, spec, fault, chosen)
 
 
 def _without_size(system: System, fault: FaultText) -> FaultText:
