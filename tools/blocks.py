@@ -14,7 +14,6 @@ from pydantic import BaseModel, ValidationError
 from faultpath.analyses.map.record import MapRecord
 from faultpath.analyses.record import DecisionRecord
 from faultpath.analyses.scan.record import ScanRecord
-from faultpath.analyses.tables.escapes import html as escape
 from faultpath.api.folders import (
     MADE_FROM,
     MAP,
@@ -24,6 +23,7 @@ from faultpath.api.folders import (
     SCAN,
     SCAN_MADE_FROM,
 )
+from faultpath.report.tables.escapes import html as escape
 from faultpath.run.provenance import RunProvenance
 
 sys.path += [

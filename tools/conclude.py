@@ -19,11 +19,11 @@ from faultpath.analyses.record import DecisionRecord
 from faultpath.analyses.scan.decide import concluded
 from faultpath.analyses.scan.errors import Scanned
 from faultpath.analyses.scan.record import ScanRecord
-from faultpath.analyses.tables import Table
 from faultpath.api.folders import MAP, RECORD, SCAN, as_text
 from faultpath.api.replaying import shown_first
 from faultpath.api.runs import open_run
 from faultpath.report.map import table_markdown
+from faultpath.report.tables import Table
 from faultpath.run import Deliveries, SystemSpec, Trials, load_system
 from faultpath.run.provenance import RunProvenance
 from faultpath.run.store.folder import OUTCOMES, TRACES, read_outcomes, seal

@@ -7,9 +7,9 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.tables import MISSING
-from faultpath.analyses.tables.escapes import markdown as escape
+from faultpath.report.sentences import wording
+from faultpath.report.tables import MISSING
+from faultpath.report.tables.escapes import markdown as escape
 
 TEMPLATES = Path(__file__).parent / "templates"
 

@@ -14,10 +14,10 @@ from faultpath_quadrotor.training.catalogue import ALL, ModelEntry
 from rich.console import Console
 
 from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.tables.markdown import grid
+from faultpath.report.audit_tables import DIFFERENCE, by_quantity
 from faultpath.report.map_pictures import correlation_picture, map_picture
 from faultpath.report.scan_pictures import triangle
-from faultpath.report.tables import DIFFERENCE, by_quantity
+from faultpath.report.tables.markdown import grid
 from faultpath.report.terminal import decision
 
 MAP_PICTURES = {"map": map_picture, "correlation": correlation_picture}

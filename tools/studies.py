@@ -9,8 +9,8 @@ from carry_verdicts import hours, lead, moves, overall, questions, reason, sente
 from state_design import Audit, SensorAudits
 
 from faultpath.analyses.model import CORRECT, SHARED
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.sentences.wording import counted
+from faultpath.report.sentences import wording
+from faultpath.report.sentences.wording import counted
 
 CAMERA_PLACES = {
     "correct": "no fault",

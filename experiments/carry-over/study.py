@@ -19,11 +19,11 @@ from carry_design import VOID, Cell, Design, Flown, Levels, Round
 from carry_verdicts import sentences, settled
 
 from faultpath.analyses.planning import plan_audit
-from faultpath.analyses.sentences.wording import counted
 from faultpath.api.display import Display, SafeConsole
 from faultpath.api.systems import executor_of
 from faultpath.core.errors import Stopped, UserError
 from faultpath.core.files.atomic import make_folder, write_text
+from faultpath.report.sentences.wording import counted
 from faultpath.run import (
     Group,
     Row,

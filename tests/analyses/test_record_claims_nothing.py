@@ -21,12 +21,12 @@ from faultpath.analyses.decide import decide
 from faultpath.analyses.effects import Change, Effect
 from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences import phrases, wording
-from faultpath.analyses.sentences.answers import answers
-from faultpath.analyses.sentences.phrases import in_short
-from faultpath.analyses.sentences.shares import ahead
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
+from faultpath.report.sentences import phrases, wording
+from faultpath.report.sentences.answers import answers
+from faultpath.report.sentences.phrases import in_short
+from faultpath.report.sentences.shares import ahead
 from faultpath.run import Trials
 from faultpath.run.question import StopWhen
 from faultpath.system import Status

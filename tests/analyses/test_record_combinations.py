@@ -9,8 +9,8 @@ from outcome_tables import BASELINE, MOST_WORDS, REPAIR, record, sequential
 from faultpath.analyses.effects import Effect
 from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences.answers import answers
-from faultpath.analyses.sentences.wording import where
+from faultpath.report.sentences.answers import answers
+from faultpath.report.sentences.wording import where
 
 State = tuple[int, str]
 """Who is decided to be ahead, and what is special: `floor`, `idle`, `small`."""

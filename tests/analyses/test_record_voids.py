@@ -9,8 +9,8 @@ from outcome_tables import BASELINE, REPAIR, SCENES, conditions, facts, question
 from faultpath.analyses.decide import decide
 from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences.answers import answers
-from faultpath.analyses.sentences.phrases import in_short
+from faultpath.report.sentences.answers import answers
+from faultpath.report.sentences.phrases import in_short
 from faultpath.run import Trials
 from faultpath.system import Status
 

@@ -7,10 +7,10 @@ from outcomes import trial
 from faultpath.analyses.decide import decide
 from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences.answers import answers
-from faultpath.analyses.sentences.phrases import change, estimand, in_short
-from faultpath.analyses.sentences.shares import ahead
 from faultpath.core.errors import UserError
+from faultpath.report.sentences.answers import answers
+from faultpath.report.sentences.phrases import change, estimand, in_short
+from faultpath.report.sentences.shares import ahead
 from faultpath.run import Trials
 from faultpath.system import Status
 

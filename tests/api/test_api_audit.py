@@ -14,8 +14,8 @@ from toy_audits import AUDIT, FILE, TOY
 import faultpath
 from faultpath.api.display import Display
 from faultpath.core.files.parquet import read_table
+from faultpath.report.audit_tables import markdown_table
 from faultpath.report.html import report_page
-from faultpath.report.tables import markdown_table
 from faultpath.report.terminal import decision
 from faultpath.run.store.folder import OUTCOMES
 from faultpath.run.store.signals import encode_signals

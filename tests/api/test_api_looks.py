@@ -6,7 +6,7 @@ import pytest
 from toy_audits import AUDIT, TOY
 
 import faultpath
-from faultpath.analyses.sentences.answers import answers
+from faultpath.report.sentences.answers import answers
 
 AUDIT_MODULE = import_module("faultpath.api.audit")
 FIVE_PERCENT = "at most 5 % of audits would report any difference"

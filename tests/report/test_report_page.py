@@ -11,10 +11,10 @@ from page_reader import Page, unpack
 import faultpath.analyses.pairs as page_pairs
 from faultpath.analyses.examples import captions
 from faultpath.analyses.pairs import PairKind, read_pairs
-from faultpath.analyses.sentences import phrases
-from faultpath.analyses.sentences.wording import capital
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
+from faultpath.report.sentences import phrases
+from faultpath.report.sentences.wording import capital
 from faultpath.stats.estimate import DEGREES, EM
 
 

@@ -7,9 +7,9 @@ import pytest
 from rich.console import Console
 
 from faultpath.analyses.record import DecisionRecord
+from faultpath.report.audit_tables import by_condition, decided_for, markdown_table
 from faultpath.report.html import _finding, write_report
 from faultpath.report.inputs import ReportInput
-from faultpath.report.tables import by_condition, decided_for, markdown_table
 from faultpath.report.terminal import decision
 
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from itertools import compress
 from typing import TypeAlias
 
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.tables import Line, Table
+from faultpath.report.sentences import wording
+from faultpath.report.tables import Line, Table
 from faultpath_paper.answers import Sweep
 from faultpath_paper.cells import Cell, data
 from faultpath_paper.entries import EntryGroup, Figure, PublishedContrast, difference, success

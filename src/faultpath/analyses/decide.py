@@ -22,10 +22,10 @@ from faultpath.analyses.model import (
     Testing,
 )
 from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences import phrases
 from faultpath.analyses.shares import between
 from faultpath.analyses.stopping import stopped
 from faultpath.core.errors import UserError
+from faultpath.report.sentences import phrases
 from faultpath.run.pairing import mismatch_words
 from faultpath.run.trials import Trials
 from faultpath.stats.contrast import Contrast

@@ -6,11 +6,11 @@ from typing import Literal, get_args
 
 from faultpath.analyses.model import SHARED
 from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences import phrases
-from faultpath.analyses.sentences.phrases import NO_RESULT, in_short, places
-from faultpath.analyses.sentences.wording import capital, counted, sentence, where
 from faultpath.core.errors import UserError
 from faultpath.core.text import unknown
+from faultpath.report.sentences import phrases
+from faultpath.report.sentences.phrases import NO_RESULT, in_short, places
+from faultpath.report.sentences.wording import capital, counted, sentence, where
 
 Ask = Literal["reversal", "repair-behind", "undecided", "void"]
 ASKS: tuple[Ask, ...] = get_args(Ask)

@@ -10,9 +10,9 @@ from faultpath.analyses.decide import primary_condition
 from faultpath.analyses.facts import ComparisonFacts
 from faultpath.analyses.judging_table import Address, Key, table_of, units_of
 from faultpath.analyses.model import AS_RUN, CORRECT, SHARED, Condition
-from faultpath.analyses.sentences.wording import capital, counted, where
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
+from faultpath.report.sentences.wording import capital, counted, where
 from faultpath.run import Trials
 from faultpath.run.deliveries import unproven
 from faultpath.run.received.question import JudgeQuestion

@@ -10,7 +10,6 @@ from faultpath.analyses.decide import decide, primary_condition
 from faultpath.analyses.facts import ComparisonFacts, SceneOrder, facts_of, question_of
 from faultpath.analyses.model import CORRECT, SHARED, Condition, FaultedTap
 from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences.wording import counted
 from faultpath.analyses.stopping import stops
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
@@ -18,6 +17,7 @@ from faultpath.core.text import unknown
 from faultpath.faults import Fault, at_readers, describe
 from faultpath.interface import module_of
 from faultpath.loop import TapCount
+from faultpath.report.sentences.wording import counted
 from faultpath.run import (
     Deliveries,
     Row,

@@ -1,8 +1,8 @@
 """The result of an audit with its words, which are made from its numbers where they are shown."""
 
 from faultpath.analyses.model import AuditResult
-from faultpath.analyses.sentences import answers
-from faultpath.analyses.sentences.headline import headline
+from faultpath.report.sentences import answers
+from faultpath.report.sentences.headline import headline
 
 
 class DecisionRecord(AuditResult):

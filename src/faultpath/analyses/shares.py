@@ -4,7 +4,7 @@ from faultpath.analyses.compared import PairedTrials
 from faultpath.analyses.effects import Effect
 from faultpath.analyses.family import TestedContrasts
 from faultpath.analyses.model import Ahead, ConditionBreakEven, Share
-from faultpath.analyses.sentences.wording import first, last
+from faultpath.report.sentences.wording import first, last
 from faultpath.stats.breakeven import break_even, mixture_curve, only
 from faultpath.stats.estimate import Region
 

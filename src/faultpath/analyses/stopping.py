@@ -7,8 +7,8 @@ from faultpath.analyses.facts import ComparisonFacts, EarlierAnalysis, Question
 from faultpath.analyses.family import TestedContrasts, family_of
 from faultpath.analyses.model import Condition, StoppedAudit
 from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences import phrases
 from faultpath.core.errors import UserError
+from faultpath.report.sentences import phrases
 from faultpath.run.trials import Trials
 
 

@@ -10,7 +10,6 @@ from typing import Any
 
 from faultpath.analyses.planning import Audit, plan_audit
 from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences.wording import counted
 from faultpath.analyses.stopping import with_earlier_analyses
 from faultpath.api.display import Display
 from faultpath.api.folders import (
@@ -29,6 +28,7 @@ from faultpath.core.files.atomic import write_file, write_text
 from faultpath.core.files.parquet import Unreadable
 from faultpath.faults import FaultText
 from faultpath.report.inputs import ReportInput
+from faultpath.report.sentences.wording import counted
 from faultpath.run import system_shown
 from faultpath.run.execution.runner import RunResult
 from faultpath.run.question import AuditCall

@@ -23,11 +23,11 @@ from faultpath.api.folders import (
 )
 from faultpath.core.errors import UserError
 from faultpath.core.files.parquet import read_table
+from faultpath.report.audit_tables import markdown_table
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
 from faultpath.report.map import write_map
 from faultpath.report.scan import write_scan
-from faultpath.report.tables import markdown_table
 from faultpath.run.provenance import RunProvenance
 from faultpath.run.store.folder import AGAIN, unseal
 from faultpath.run.store.tables import encode_outcomes

@@ -36,11 +36,11 @@ def scan(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     """Find which errors of a system's inputs cancel: each alone costs success, and both together
     less than either, so that correcting one of them alone does not help."""
     from faultpath.analyses.scan.sources import Ranking
-    from faultpath.analyses.tables.terminal import Parted
     from faultpath.api.comparing import in_json
     from faultpath.api.display import SafeConsole
     from faultpath.api.scanning import scan
     from faultpath.report.scan import ranking_table, tables
+    from faultpath.report.tables.terminal import Parted
     from faultpath.report.terminal import conclusion
 
     result = scan(system, **arguments, progress=display(as_json))

@@ -47,12 +47,12 @@ def replay(
     """Run trials of a finished run again and compare them with the run, to the bit. It runs the
     system that the run names, which has to be installed, named with --code, or trusted. Exits with
     1 where one differs."""
-    from faultpath.analyses.sentences.parting import compared, parted
-    from faultpath.analyses.sentences.wording import counted
-    from faultpath.analyses.tables.terminal import STYLES
     from faultpath.api.display import SafeConsole
     from faultpath.api.folders import RECORD, read_provenance, read_run
     from faultpath.api.replaying import chosen_scenes, keep_signals, replay, where_parted
+    from faultpath.report.sentences.parting import compared, parted
+    from faultpath.report.sentences.wording import counted
+    from faultpath.report.tables.terminal import STYLES
 
     if as_json and not where:
         raise UserError("--json prints what --where finds: give --where too.")

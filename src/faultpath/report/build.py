@@ -5,9 +5,9 @@ from xml.etree import ElementTree
 
 from faultpath.analyses.gate import found
 from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences.answers import answers
-from faultpath.analyses.tables.escapes import markdown, visible
-from faultpath.report.tables import markdown_table
+from faultpath.report.audit_tables import markdown_table
+from faultpath.report.sentences.answers import answers
+from faultpath.report.tables.escapes import markdown, visible
 
 
 def junit(records: Sequence[DecisionRecord], conditions: Sequence[str]) -> str:

@@ -13,9 +13,9 @@ from faultpath.analyses.effects import Effect
 from faultpath.analyses.facts import ComparisonFacts, Question
 from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences import phrases, wording
 from faultpath.analyses.sweep import decide_sizes
 from faultpath.report.inputs import ReportInput
+from faultpath.report.sentences import phrases, wording
 from faultpath.run.provenance import RunProvenance
 from faultpath.stats.estimate import Sign
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from faultpath.analyses.effects import Effect
 from faultpath.analyses.model import ConditionBreakEven
 from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.sentences.phrases import in_short
-from faultpath.analyses.sentences.shares import ahead
+from faultpath.report.sentences import wording
+from faultpath.report.sentences.phrases import in_short
+from faultpath.report.sentences.shares import ahead
 from faultpath.report.svg import Axis, Svg, covering, draw_axes, shortened, text_width, tick_label
 
 _PITCH, _TOP, _NUMBERS = 48.0, 44.0, 146.0

@@ -16,10 +16,10 @@ from typing import Any
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.tables.escapes import visible
 from faultpath.core.files.atomic import begin, check_mark, write_text
 from faultpath.core.version import __version__
+from faultpath.report.sentences import wording
+from faultpath.report.tables.escapes import visible
 
 PAGE = b'<meta name="generator" content="faultpath '
 """Text in the head of every page."""

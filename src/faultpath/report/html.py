@@ -8,15 +8,8 @@ from faultpath.analyses.effects import Effect
 from faultpath.analyses.model import SHARED
 from faultpath.analyses.pairs import PairKind, counts, is_sample, read_pairs
 from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences import phrases, wording
-from faultpath.analyses.sentences.answers import answers
-from faultpath.analyses.tables.html import html
 from faultpath.report.adding import adding, adding_panels
-from faultpath.report.effects import effect_axis, effect_rows, frequency_panels, no_break_even
-from faultpath.report.frame import STYLES, render, write_pages
-from faultpath.report.inputs import ReportInput
-from faultpath.report.pair_grid import pair_grid, pair_key
-from faultpath.report.tables import (
+from faultpath.report.audit_tables import (
     SHOWN,
     by_condition,
     by_threshold,
@@ -26,6 +19,13 @@ from faultpath.report.tables import (
     median_time,
     secondary,
 )
+from faultpath.report.effects import effect_axis, effect_rows, frequency_panels, no_break_even
+from faultpath.report.frame import STYLES, render, write_pages
+from faultpath.report.inputs import ReportInput
+from faultpath.report.pair_grid import pair_grid, pair_key
+from faultpath.report.sentences import phrases, wording
+from faultpath.report.sentences.answers import answers
+from faultpath.report.tables.html import html
 from faultpath.report.taps import fork_panel, forks
 from faultpath.report.viewer import viewer_data
 

@@ -6,13 +6,13 @@ from markupsafe import Markup
 
 from faultpath.analyses.map.lattice import SHARED
 from faultpath.analyses.map.record import MapRecord
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.sentences.maps import estimand
-from faultpath.analyses.tables import Entry, Line, Table, line
-from faultpath.analyses.tables.html import html
-from faultpath.analyses.tables.markdown import block
 from faultpath.report.frame import render, write_pages
 from faultpath.report.map_pictures import correlation_picture, map_picture
+from faultpath.report.sentences import wording
+from faultpath.report.sentences.maps import estimand
+from faultpath.report.tables import Entry, Line, Table, line
+from faultpath.report.tables.html import html
+from faultpath.report.tables.markdown import block
 from faultpath.run.provenance import RunProvenance
 from faultpath.stats.contrast import MIN_SCENES
 

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from itertools import pairwise, product
 
 from faultpath.analyses.map.record import MapRecord
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.sentences.maps import at_point
+from faultpath.report.sentences import wording
+from faultpath.report.sentences.maps import at_point
 from faultpath.report.svg import (
     Axis,
     Point,

@@ -7,13 +7,13 @@ from markupsafe import Markup
 from faultpath.analyses.scan.model import ScanError, ScannedVersion, SecondStage
 from faultpath.analyses.scan.record import ScanRecord
 from faultpath.analyses.scan.sources import Candidate, Ranking
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.sentences.scan import in_words, named, of_pair, size
-from faultpath.analyses.tables import Entry, Line, Table, line
-from faultpath.analyses.tables.html import html
-from faultpath.analyses.tables.markdown import block
 from faultpath.report.frame import render, write_pages
 from faultpath.report.scan_pictures import letters, strip, triangle
+from faultpath.report.sentences import wording
+from faultpath.report.sentences.scan import in_words, named, of_pair, size
+from faultpath.report.tables import Entry, Line, Table, line
+from faultpath.report.tables.html import html
+from faultpath.report.tables.markdown import block
 from faultpath.run.provenance import RunProvenance
 
 

@@ -5,8 +5,8 @@ from string import ascii_uppercase
 
 from faultpath.analyses.scan.model import ScannedPair, ScannedVersion
 from faultpath.analyses.scan.record import ScanRecord
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.sentences.scan import named, rate
+from faultpath.report.sentences import wording
+from faultpath.report.sentences.scan import named, rate
 from faultpath.report.svg import Axis, Svg, number, text_width, tick_label
 
 _CELL, _LEFT, _TOP = 30.0, 24.0, 124.0

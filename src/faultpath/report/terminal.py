@@ -9,17 +9,17 @@ from rich.text import Text
 from faultpath.analyses.map.record import MapRecord
 from faultpath.analyses.record import DecisionRecord
 from faultpath.analyses.scan.record import ScanRecord
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.sentences.answers import answers
-from faultpath.analyses.sentences.phrases import (
+from faultpath.interface import Gap, Interface, rank, transitive_readers
+from faultpath.report.audit_tables import DIFFERENCE, by_condition, by_quantity, by_threshold
+from faultpath.report.sentences import wording
+from faultpath.report.sentences.answers import answers
+from faultpath.report.sentences.phrases import (
     for_trainings,
     in_trials_that_ran,
     not_standing,
 )
-from faultpath.analyses.tables import Line, Table, line
-from faultpath.analyses.tables.terminal import Parted, drawn
-from faultpath.interface import Gap, Interface, rank, transitive_readers
-from faultpath.report.tables import DIFFERENCE, by_condition, by_quantity, by_threshold
+from faultpath.report.tables import Line, Table, line
+from faultpath.report.tables.terminal import Parted, drawn
 from faultpath.run.check.reads import Read
 from faultpath.run.check.tracing import TraceReport
 

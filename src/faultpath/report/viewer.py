@@ -15,11 +15,11 @@ from faultpath.analyses.model import SHARED
 from faultpath.analyses.pairs import Pair, by_scene, is_sample
 from faultpath.analyses.parting import Heard, parting
 from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.sentences.parting import DIFFERS, ending
-from faultpath.analyses.sentences.parting import parted as said
 from faultpath.report.inputs import ReportInput
 from faultpath.report.plots import Plot, first_plot, plots_of
+from faultpath.report.sentences import wording
+from faultpath.report.sentences.parting import DIFFERS, ending
+from faultpath.report.sentences.parting import parted as said
 from faultpath.run.store.signals import DRAWN, IN_FORCE, Signal, Signals
 from faultpath.run.store.tables import Trace, TrialAddress, traces_of
 from faultpath.system.outcome import Outcome

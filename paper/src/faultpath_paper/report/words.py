@@ -3,7 +3,7 @@
 import re
 from collections.abc import Sequence
 
-from faultpath.analyses.sentences import wording
+from faultpath.report.sentences import wording
 from faultpath_paper.answers import Answer, ClaimVerdict, Ledger, Size, StatementPart
 
 QUICK = "quick"

@@ -7,8 +7,8 @@ from pydantic import Field, model_validator
 from faultpath.analyses.facts import Facts
 from faultpath.analyses.map.lattice import UNITS
 from faultpath.analyses.model import Invalid
-from faultpath.analyses.sentences.wording import MINUS
 from faultpath.core.results import Result
+from faultpath.report.sentences.wording import MINUS
 from faultpath.run.question import MapQuestion
 from faultpath.stats.estimate import Sign
 

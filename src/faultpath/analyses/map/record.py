@@ -1,7 +1,7 @@
 """The result of a map with its words, which are made from its numbers where they are shown."""
 
 from faultpath.analyses.map.model import MapResult
-from faultpath.analyses.sentences import maps
+from faultpath.report.sentences import maps
 
 
 class MapRecord(MapResult):

@@ -1,7 +1,7 @@
 """The result of a scan with its words, which are made from its numbers where they are shown."""
 
 from faultpath.analyses.scan.model import ScanResult
-from faultpath.analyses.sentences import scan
+from faultpath.report.sentences import scan
 
 
 class ScanRecord(ScanResult):

@@ -4,8 +4,8 @@ from collections.abc import Iterator, Sequence
 
 from faultpath.analyses.map.lattice import SHARED
 from faultpath.analyses.map.model import Flip, MapFacts, MapPoint, MapResult
-from faultpath.analyses.sentences.phrases import NO_RESULT
-from faultpath.analyses.sentences.wording import MINUS, plain, series, signed
+from faultpath.report.sentences.phrases import NO_RESULT
+from faultpath.report.sentences.wording import MINUS, plain, series, signed
 from faultpath.stats.contrast import MIN_SCENES
 
 

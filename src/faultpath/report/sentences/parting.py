@@ -2,8 +2,8 @@
 
 from faultpath.analyses.facts import ComparisonFacts
 from faultpath.analyses.parting import Difference, Ended, Kind, Parting
-from faultpath.analyses.sentences.wording import MINUS, capital, ended, series, unit, where
 from faultpath.core.text import one_line
+from faultpath.report.sentences.wording import MINUS, capital, ended, series, unit, where
 from faultpath.system.outcome import control_steps
 
 DIFFERS: dict[Kind, str] = {

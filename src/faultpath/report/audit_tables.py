@@ -4,11 +4,11 @@ from collections.abc import Mapping, Sequence
 
 from faultpath.analyses.effects import Effect
 from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences import phrases, wording
-from faultpath.analyses.sentences.phrases import adjusted, not_standing, only_alone
-from faultpath.analyses.sentences.wording import capital
-from faultpath.analyses.tables import MISSING, Entry, Line, Table, line
-from faultpath.analyses.tables.markdown import block
+from faultpath.report.sentences import phrases, wording
+from faultpath.report.sentences.phrases import adjusted, not_standing, only_alone
+from faultpath.report.sentences.wording import capital
+from faultpath.report.tables import MISSING, Entry, Line, Table, line
+from faultpath.report.tables.markdown import block
 from faultpath.stats.estimate import Estimate
 
 _VARIANTS = ("baseline", "repair")

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from faultpath.analyses.effects import Effect
 from faultpath.analyses.model import CORRECT, SHARED, AuditResult
-from faultpath.analyses.sentences.phrases import (
+from faultpath.report.sentences.phrases import (
     NO_RESULT,
     failed_more,
     in_few_scenes,
@@ -15,7 +15,7 @@ from faultpath.analyses.sentences.phrases import (
     no_pair,
     places,
 )
-from faultpath.analyses.sentences.wording import capital, where
+from faultpath.report.sentences.wording import capital, where
 
 
 def headline(record: AuditResult) -> str:

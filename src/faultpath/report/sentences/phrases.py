@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from faultpath.analyses.effects import Change, Effect
 from faultpath.analyses.facts import ComparisonFacts, Question
 from faultpath.analyses.model import CORRECT, SHARED, AuditResult, Invalid
-from faultpath.analyses.sentences.wording import (
+from faultpath.report.sentences.wording import (
     capital,
     counted,
     interval,
