@@ -22,7 +22,7 @@ def audited(**asked) -> faultpath.Run:
 
 
 def said(run: faultpath.Run) -> str:
-    return " ".join((*run.record.findings, *answers(run.record).values()))
+    return " ".join((*run.words.findings, *answers(run.record).values()))
 
 
 def test_more_scenes_in_the_same_folder_leave_a_trace_that_stays(monkeypatch):

@@ -3,9 +3,8 @@
 import pytest
 from toy_audits import TOY
 
-from faultpath.analyses.model import FaultedTap
+from faultpath.analyses.model import AuditResult, FaultedTap
 from faultpath.analyses.planning import Audit, plan_audit
-from faultpath.analyses.record import DecisionRecord
 from faultpath.faults import FaultText
 from faultpath.run import SystemSpec, load_system
 from faultpath.run.execution.runner import run_study
@@ -22,7 +21,7 @@ def asked(text: str) -> Audit:
     return plan_audit(system, spec, question, system.library("carts"))
 
 
-def faulted(record: DecisionRecord) -> dict[str, tuple[tuple[FaultedTap, ...], ...]]:
+def faulted(record: AuditResult) -> dict[str, tuple[tuple[FaultedTap, ...], ...]]:
     return {
         condition.name: (condition.faulted, condition.baseline_faulted)
         for condition in record.conditions

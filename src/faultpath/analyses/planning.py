@@ -8,16 +8,14 @@ from pathlib import PurePath
 from faultpath.analyses.analysis import Analysis, Round, Rounds
 from faultpath.analyses.decide import decide, primary_condition
 from faultpath.analyses.facts import ComparisonFacts, SceneOrder, facts_of, question_of
-from faultpath.analyses.model import CORRECT, SHARED, Condition, FaultedTap
-from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.model import CORRECT, SHARED, AuditResult, Condition, FaultedTap
 from faultpath.analyses.stopping import stops
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
-from faultpath.core.text import unknown
+from faultpath.core.text import counted, unknown
 from faultpath.faults import Fault, at_readers, describe
 from faultpath.interface import module_of
 from faultpath.loop import TapCount
-from faultpath.report.sentences.wording import counted
 from faultpath.run import (
     Deliveries,
     Row,
@@ -50,9 +48,7 @@ class Audit(Analysis[None]):
         """Yield the only round."""
         yield Round(self.study, stop=self.stops)
 
-    def conclude(
-        self, trials: Trials, deliveries: Deliveries, items: None = None
-    ) -> DecisionRecord:
+    def conclude(self, trials: Trials, deliveries: Deliveries, items: None = None) -> AuditResult:
         """Return the decision record of a run; raises as `faultpath.analyses.decide`."""
         question = self.question
         conditions = [

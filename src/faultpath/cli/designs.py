@@ -58,7 +58,7 @@ def scan(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
         typer.echo(json.dumps(in_json(result.folder, result.record), indent=1))
     else:
         console.print(conclusion(result.record, tables(result.record)))
-        for command in result.record.commands:
+        for command in result.words.commands or ():
             console.print(f"Next: {command}", markup=False, soft_wrap=True)
         console.print(f"Report: {result.folder / 'report.html'}", markup=False, soft_wrap=True)
     return FOUND if result.record.failed else 0

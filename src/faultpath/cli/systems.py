@@ -71,7 +71,7 @@ def check(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
 
     from faultpath.api.checks import check
     from faultpath.api.display import SafeConsole
-    from faultpath.report.sentences.wording import counted
+    from faultpath.core.text import counted
     from faultpath.report.tables.terminal import STYLES
 
     report = check(system, **arguments, progress=display())

@@ -1,7 +1,8 @@
 """For a verb that shows results: estimates with intervals, tables, and numbers as all pages do."""
 
 from faultpath.api.display import SafeConsole
-from faultpath.report.sentences.wording import counted, interval, plain
+from faultpath.core.text import counted
+from faultpath.report.sentences.wording import interval, plain
 from faultpath.report.tables import MISSING, Line, Table, line
 from faultpath.report.tables.terminal import drawn
 from faultpath.stats.contrast import Contrast

@@ -8,8 +8,8 @@ from rich.padding import Padding
 from rich.text import Text
 
 from faultpath.analyses.family import ALPHA
-from faultpath.analyses.model import SHARED
-from faultpath.core.text import shortened
+from faultpath.analyses.model import SHARED, where
+from faultpath.core.text import series, shortened
 from faultpath.report.audit_tables import decided_for
 from faultpath.report.compared import (
     Compared,
@@ -23,7 +23,6 @@ from faultpath.report.compared import (
 from faultpath.report.effects import Row, panel, shared_axis
 from faultpath.report.frame import render
 from faultpath.report.sentences import wording
-from faultpath.report.sentences.wording import series, where
 from faultpath.report.svg import tick_label
 from faultpath.report.tables import MISSING, Entry, Line, Table, line
 from faultpath.report.tables.html import html

@@ -7,6 +7,7 @@ from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
+from faultpath.core.text import counted
 from faultpath.report.sentences import wording
 from faultpath.report.tables import MISSING, Entry, Table, line
 from faultpath.report.tables.escapes import markdown
@@ -98,7 +99,7 @@ def ledger_markdown(ledger: Ledger, profile: str) -> str:
 
 
 def _about(ledger: Ledger) -> str:
-    scenes = wording.counted(ledger.scenes, "scene")
+    scenes = counted(ledger.scenes, "scene")
     return f"{ledger.library}, {scenes}, {wording.seeds(ledger.seeds)}"
 
 

@@ -6,7 +6,8 @@ Names of modules and variants count as one word each.
 from collections.abc import Sequence
 
 from faultpath.analyses.effects import Effect
-from faultpath.analyses.model import CORRECT, SHARED, AuditResult
+from faultpath.analyses.model import CORRECT, SHARED, AuditResult, where
+from faultpath.core.text import capital
 from faultpath.report.sentences.phrases import (
     NO_RESULT,
     failed_more,
@@ -15,7 +16,6 @@ from faultpath.report.sentences.phrases import (
     no_pair,
     places,
 )
-from faultpath.report.sentences.wording import capital, where
 
 
 def headline(record: AuditResult) -> str:
