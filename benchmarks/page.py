@@ -20,8 +20,8 @@ from benchmarks.results import (
     record,
 )
 from benchmarks.waits import STEPS, TESTS
-from faultpath.analyses.tables import MISSING, Line, Table, line
-from faultpath.analyses.tables.markdown import grid
+from faultpath.report.tables import MISSING, Line, Table, line
+from faultpath.report.tables.markdown import grid
 
 _COLUMNS = ("faultpath", "compared with", "ratio")
 _A_STEP = {VEHICLE_STEPS: "µs a vehicle and step", LOOP_STEPS: "µs a step"}

@@ -11,10 +11,9 @@ from typing import Any, NamedTuple
 
 from pydantic import BaseModel, ValidationError
 
-from faultpath.analyses.map.record import MapRecord
-from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.scan.record import ScanRecord
-from faultpath.analyses.tables.escapes import html as escape
+from faultpath.analyses.map.model import MapResult
+from faultpath.analyses.model import AuditResult
+from faultpath.analyses.scan.model import ScanResult
 from faultpath.api.folders import (
     MADE_FROM,
     MAP,
@@ -24,6 +23,7 @@ from faultpath.api.folders import (
     SCAN,
     SCAN_MADE_FROM,
 )
+from faultpath.report.tables.escapes import html as escape
 from faultpath.run.provenance import RunProvenance
 
 sys.path += [
@@ -40,9 +40,9 @@ PROVENANCE, CELLS, AUDITS = "provenance.json", "cells.json", "audits.json"
 REPEATS = "repeats.json"
 """Result of repeating a sample of a run's trials, which `tools/references.py` writes."""
 RUNS: dict[str, tuple[type[BaseModel], tuple[str, ...]]] = {
-    RECORD: (DecisionRecord, (*MADE_FROM, PROVENANCE, "report.html", "table.md")),
-    MAP: (MapRecord, (*MAP_MADE_FROM, PROVENANCE, "table.md")),
-    SCAN: (ScanRecord, (*SCAN_MADE_FROM, PROVENANCE, "report.html", "table.md")),
+    RECORD: (AuditResult, (*MADE_FROM, PROVENANCE, "report.html", "table.md")),
+    MAP: (MapResult, (*MAP_MADE_FROM, PROVENANCE, "table.md")),
+    SCAN: (ScanResult, (*SCAN_MADE_FROM, PROVENANCE, "report.html", "table.md")),
     CELLS: (Flown, (CELLS, PROVENANCE)),
     AUDITS: (SensorAudits, (AUDITS, OUTCOMES, PROVENANCE)),
 }

@@ -8,7 +8,7 @@ from rendering import difference
 from studies import CAMERA_FAULTS, camera, sensors
 
 from faultpath.analyses import effects
-from faultpath.analyses.sentences import wording
+from faultpath.report.sentences import wording
 
 WORLD_MODEL = "stable-worldmodel"
 PAGES = {

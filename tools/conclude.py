@@ -14,16 +14,17 @@ from paper_blocks import PLACE, RUN
 from faultpath.analyses.decide import decide
 from faultpath.analyses.map.analysis import map_analysis
 from faultpath.analyses.map.lattice import UNITS
-from faultpath.analyses.map.record import MapRecord
-from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.map.model import MapResult
+from faultpath.analyses.model import AuditResult
 from faultpath.analyses.scan.decide import concluded
 from faultpath.analyses.scan.errors import Scanned
-from faultpath.analyses.scan.record import ScanRecord
-from faultpath.analyses.tables import Table
+from faultpath.analyses.scan.model import ScanResult
 from faultpath.api.folders import MAP, RECORD, SCAN, as_text
 from faultpath.api.replaying import shown_first
 from faultpath.api.runs import open_run
 from faultpath.report.map import table_markdown
+from faultpath.report.sentences.words import words
+from faultpath.report.tables import Table
 from faultpath.run import Deliveries, SystemSpec, Trials, load_system
 from faultpath.run.provenance import RunProvenance
 from faultpath.run.store.folder import OUTCOMES, TRACES, read_outcomes, seal
@@ -34,20 +35,19 @@ from faultpath.system import library_of
 def conclude_all(say: Callable[[str], None]) -> None:
     """Decide every reference run anew and write its record, table and page; then the paper's."""
     for folder in sorted(path.parent for path in REFERENCE.glob(f"*/{RECORD}")):
-        before = parsed(folder / RECORD, DecisionRecord)
-        record = audit(folder)
-        say(f"{folder.name}: {before.headline}\n    now: {record.headline}")
+        before = words(parsed(folder / RECORD, AuditResult)).headline
+        say(f"{folder.name}: {before}\n    now: {words(audit(folder)).headline}")
     for folder in sorted(path.parent for path in REFERENCE.glob(f"*/{MAP}")):
-        say(f"{folder.name}: {reversal_map(folder).headline}")
+        say(f"{folder.name}: {words(reversal_map(folder)).headline}")
     for folder in sorted(path.parent for path in REFERENCE.glob(f"*/{SCAN}")):
-        say(f"{folder.name}: {scan(folder).headline}")
+        say(f"{folder.name}: {words(scan(folder)).headline}")
     for line in paper(RUN, PLACE):
         say(f"the paper: {line}")
 
 
-def audit(folder: Path) -> DecisionRecord:
+def audit(folder: Path) -> AuditResult:
     """Decide a stored audit anew and write its record and pages."""
-    before = parsed(folder / RECORD, DecisionRecord)
+    before = parsed(folder / RECORD, AuditResult)
     outcomes = read_outcomes(folder / OUTCOMES)
     repeats = before.invalid != "unrepeatable"
     record = decide(
@@ -60,7 +60,7 @@ def audit(folder: Path) -> DecisionRecord:
     return record
 
 
-def _keep_examples(folder: Path, record: DecisionRecord, trials: Trials) -> None:
+def _keep_examples(folder: Path, record: AuditResult, trials: Trials) -> None:
     """Leave out the traces of all trials but those of the scenes that the report begins with."""
     traces = decode_traces((folder / TRACES).read_bytes())
     shown = shown_first(record, trials, traces)
@@ -70,7 +70,7 @@ def _keep_examples(folder: Path, record: DecisionRecord, trials: Trials) -> None
         (folder / TRACES).write_bytes(encode_traces(examples))
 
 
-def reversal_map(folder: Path) -> MapRecord:
+def reversal_map(folder: Path) -> MapResult:
     """Decide a reference map anew from its trials; write its record and table."""
     before = load(folder.name).record
     question, facts = before.question, before.facts
@@ -92,9 +92,9 @@ def reversal_map(folder: Path) -> MapRecord:
     return record
 
 
-def scan(folder: Path) -> ScanRecord:
+def scan(folder: Path) -> ScanResult:
     """Decide a reference scan anew from its trials; write its result, tables and page."""
-    before = parsed(folder / SCAN, ScanRecord)
+    before = parsed(folder / SCAN, ScanResult)
     trials = read_outcomes(folder / OUTCOMES)
     version, first = before.versions[0], before.scenes[0]
     scenes = tuple(scene.id for scene in trials.scenes)

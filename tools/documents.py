@@ -33,8 +33,8 @@ from faultpath_paper.report import short, words
 from pictures import digest, made_from, make_images, name_of
 from rendering import macros
 
-from faultpath.analyses.sentences import phrases
-from faultpath.analyses.tables.markdown import block, grid
+from faultpath.report.sentences import phrases
+from faultpath.report.tables.markdown import block, grid
 from faultpath.run.store.signals import SIGNALS
 
 sys.path.insert(0, str(ROOT))

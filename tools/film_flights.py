@@ -19,7 +19,7 @@ from repeats import planned
 from faultpath.api.replaying import outcomes_at
 from faultpath.run.attempt import Done
 from faultpath.run.check.blocks import BlockSpec, run_block
-from faultpath.run.execution.recheck import difference
+from faultpath.run.execution.recheck import deviation
 from faultpath.run.store.folder import read_outcomes
 from faultpath.run.store.tables import TrialAddress
 
@@ -67,7 +67,7 @@ def flown(scene: str, seed: int) -> Flights:
         at = TrialAddress(row.variant, row.condition, seed, scene)
         block = run_block(system, BlockSpec(row.treatment, (scene,), signals=True))
         again = tuple(replace(outcome, trace=None) for outcome in block.outcomes)
-        if differs := block.error or difference([before[at]], Done(again, ())):
+        if differs := block.error or deviation([before[at]], Done(again, ())):
             raise Wrong(f"{at.variant}, {at.condition}: the trial {differs}")
         (track,) = (outcome.trace for outcome in block.outcomes if outcome.trace is not None)
         (wind,) = (signal.values for signal in block.signals[0] if signal.name == "true_wind")

@@ -11,8 +11,8 @@ from blocks import OUTCOMES, REFERENCE, Picture, Run, Wrong, load
 from film import OTHER_SIGN, SIGNS, Film
 
 from faultpath.analyses.effects import Effect
-from faultpath.analyses.sentences import wording
 from faultpath.api.replaying import outcomes_at
+from faultpath.report.sentences import wording
 from faultpath.report.svg import number
 from faultpath.run.store.folder import read_outcomes
 from faultpath.run.store.tables import TrialAddress

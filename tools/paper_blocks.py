@@ -21,7 +21,7 @@ from faultpath_paper.central import (
 from faultpath_paper.report.page import sweep_plot
 
 from faultpath.analyses.model import CORRECT, SHARED
-from faultpath.analyses.sentences import shares, wording
+from faultpath.report.sentences import shares, wording
 from faultpath.report.svg import template
 from faultpath.run.store.folder import read_outcomes
 

@@ -7,9 +7,10 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.tables import MISSING
-from faultpath.analyses.tables.escapes import markdown as escape
+from faultpath.core.text import counted, series
+from faultpath.report.sentences import wording
+from faultpath.report.tables import MISSING
+from faultpath.report.tables.escapes import markdown as escape
 
 TEMPLATES = Path(__file__).parent / "templates"
 
@@ -62,7 +63,7 @@ def fence(body: str, info: str = "text", *more: str) -> str:
 
 FILTERS: Mapping[str, Callable[..., object]] = {
     "at": lambda key, mapping: mapping[key],
-    "counted": wording.counted,
+    "counted": counted,
     "counted_in": lambda word, words: words.count(word) or "",
     "effect": effect,
     "escape": escape,
@@ -73,7 +74,7 @@ FILTERS: Mapping[str, Callable[..., object]] = {
     "percent": percent,
     "plain": wording.plain,
     "seeds": wording.seeds,
-    "series": wording.series,
+    "series": series,
     "signed": wording.signed,
 }
 

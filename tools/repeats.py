@@ -15,10 +15,10 @@ from blocks import OUTCOMES, REFERENCE, REPEATS, ROOT, Repeats, Run
 from faultpath.analyses.audit import audit_analysis
 from faultpath.analyses.map.analysis import map_analysis
 from faultpath.analyses.map.lattice import UNITS
-from faultpath.analyses.map.record import MapRecord
-from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.map.model import MapResult
+from faultpath.analyses.model import AuditResult
 from faultpath.analyses.scan.analysis import ScanAnalysis, scan_analysis
-from faultpath.analyses.scan.record import ScanRecord
+from faultpath.analyses.scan.model import ScanResult
 from faultpath.api.replaying import outcomes_at
 from faultpath.run import Plan, SystemSpec, Treatment, Trials, load_system
 from faultpath.run.attempt import Done, attempt
@@ -68,10 +68,10 @@ def planned(run: Run) -> tuple[System, Plan]:
     spec = SystemSpec(name=facts.system, options=question.options)
     system = load_system(spec)
     library = library_of(system, facts.library)
-    if isinstance(run.record, ScanRecord):
+    if isinstance(run.record, ScanResult):
         analysis = scan_analysis(system, spec, question, library, known=run.record.ranking)
         return system, plan_of(analysis, read_outcomes(REFERENCE / run.name / OUTCOMES))
-    if not isinstance(run.record, MapRecord):
+    if not isinstance(run.record, MapResult):
         return system, audit_analysis(system, spec, question, library).plan
     points = [
         (round(one / facts.up_to * UNITS), round(other / facts.up_to * UNITS))
@@ -96,7 +96,7 @@ def sample(
     """Return the trials to repeat, always the same of the same run."""
     treatments = {(row.variant, row.condition, row.seed): row.treatment for row in plan.rows}
     conditions = sorted({condition for _, condition, _ in treatments}, key=_hash_order)
-    if not isinstance(run.record, DecisionRecord):
+    if not isinstance(run.record, AuditResult):
         conditions = conditions[:_CONDITIONS]
     seeds = {seed for _, _, seed in treatments}
     places = sorted(

@@ -13,11 +13,12 @@ from faultpath_quadrotor.checkpoint import shipped_folder
 from faultpath_quadrotor.training.catalogue import ALL, ModelEntry
 from rich.console import Console
 
-from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.tables.markdown import grid
+from faultpath.analyses.model import AuditResult
+from faultpath.report.audit_tables import DIFFERENCE, by_quantity
 from faultpath.report.map_pictures import correlation_picture, map_picture
 from faultpath.report.scan_pictures import triangle
-from faultpath.report.tables import DIFFERENCE, by_quantity
+from faultpath.report.sentences.headline import headline
+from faultpath.report.tables.markdown import grid
 from faultpath.report.terminal import decision
 
 MAP_PICTURES = {"map": map_picture, "correlation": correlation_picture}
@@ -37,7 +38,7 @@ MEASURES = {
 """Errors on held-out windows that a model's card may have, with their names in words."""
 
 
-def quantities(record: DecisionRecord) -> str:
+def quantities(record: AuditResult) -> str:
     """Return success of both variants and their difference, one condition a column."""
     return grid(by_quantity(record, ("baseline", "repair", *DIFFERENCE, "holm", "break-even")))
 
@@ -84,14 +85,14 @@ def map_picture_of(name: str, part: str) -> Picture:
     """Return the picture of a map, or of its success by correlation."""
     record = load(name).record
     svg = MAP_PICTURES[part](record).render(standalone=True) + "\n"
-    return Picture(f"{name}-{part}.svg", record.headline, svg)
+    return Picture(f"{name}-{part}.svg", headline(record), svg)
 
 
 def scan_picture_of(name: str) -> Picture:
     """Return the triangle of pairs of the first variant of a scan."""
     record = load(name).record
     svg = triangle(record, record.versions[0]).render(standalone=True) + "\n"
-    return Picture(f"{name}-pairs.svg", record.headline, svg)
+    return Picture(f"{name}-pairs.svg", headline(record), svg)
 
 
 def part_of(place: str, part: str) -> str:

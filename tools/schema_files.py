@@ -14,18 +14,18 @@ from pydantic import TypeAdapter
 from pydantic._internal._docs_extraction import extract_docstrings_from_cls
 from pydantic.json_schema import GenerateJsonSchema
 
-from faultpath.analyses.map.record import MapRecord
-from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.scan.record import ScanRecord
+from faultpath.analyses.map.model import MapResult
+from faultpath.analyses.model import AuditResult
+from faultpath.analyses.scan.model import ScanResult
 from faultpath.run.question import AuditQuestion, MapQuestion, ScanQuestion
 from faultpath.run.received.question import JudgeQuestion, Row
 
 FOLDER = ROOT / "src" / "faultpath" / "schemas"
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 SCHEMAS: Mapping[str, Any] = {
-    "record": DecisionRecord,
-    "map": MapRecord,
-    "scan": ScanRecord,
+    "record": AuditResult,
+    "map": MapResult,
+    "scan": ScanResult,
     "audit-question": AuditQuestion,
     "map-question": MapQuestion,
     "scan-question": ScanQuestion,

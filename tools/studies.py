@@ -9,8 +9,7 @@ from carry_verdicts import hours, lead, moves, overall, questions, reason, sente
 from state_design import Audit, SensorAudits
 
 from faultpath.analyses.model import CORRECT, SHARED
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.sentences.wording import counted
+from faultpath.core.text import counted, series
 
 CAMERA_PLACES = {
     "correct": "no fault",
@@ -73,7 +72,7 @@ def camera_answer(names: Sequence[str]) -> str:
             words: [CAMERA_FAULTS[row["fault"]] for row in rows if row["effect"][3] == sign]
             for sign, words in COMPARED.items()
         }
-        clauses = (f"{words} ({wording.series(own)})" for words, own in faults.items() if own)
+        clauses = (f"{words} ({series(own)})" for words, own in faults.items() if own)
         lines.append(f"- in {rooms} rooms {', '.join(clauses)}.")
     return "\n".join(lines)
 
@@ -116,7 +115,7 @@ def sensor_sentences(audits: Sequence[Audit]) -> list[str]:
 
 def _named(audits: Sequence[Audit]) -> str:
     names = [f"{audit.repair} under {audit.fault}" for audit in audits]
-    return f"{len(audits)} ({wording.series(names)})" if names else "none"
+    return f"{len(audits)} ({series(names)})" if names else "none"
 
 
 def _isolated(audits: Sequence[Audit], module: str) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 from carry_design import Cell, Design, Flown, Question, Reach
 from numpy.typing import NDArray
 
-from faultpath.analyses.sentences.wording import counted
+from faultpath.core.text import counted
 from faultpath.stats.betting import log_capital
 from faultpath.stats.distributions import t_interval
 from faultpath.stats.power import fewest_scenes

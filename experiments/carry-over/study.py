@@ -19,11 +19,12 @@ from carry_design import VOID, Cell, Design, Flown, Levels, Round
 from carry_verdicts import sentences, settled
 
 from faultpath.analyses.audit import audit_analysis
-from faultpath.analyses.sentences.wording import counted
 from faultpath.api.display import Display, SafeConsole
 from faultpath.api.systems import executor_of
 from faultpath.core.errors import Stopped, UserError
 from faultpath.core.files.atomic import make_folder, write_text
+from faultpath.core.text import counted
+from faultpath.report.sentences.findings import said
 from faultpath.run import (
     Group,
     Plan,
@@ -185,7 +186,7 @@ def fly(design: Design, folder: Path, workers: int | None, executor: str, show: 
             rounds, result = flight.fly(folder, force, progress=note, notice=notice)
             before = (*before, *rounds)
             for finding in result.findings:
-                show.say(finding)
+                show.say(said(finding))
             flown = Flown(
                 design=design,
                 left_out=refused,

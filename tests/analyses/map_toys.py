@@ -7,8 +7,7 @@ from outcome_tables import BASELINE, REPAIR
 
 from faultpath.analyses.map.decide import decided
 from faultpath.analyses.map.lattice import COARSE, UNITS, Point, lattice
-from faultpath.analyses.map.model import MapFacts
-from faultpath.analyses.map.record import MapRecord
+from faultpath.analyses.map.model import MapFacts, MapResult
 from faultpath.analyses.map.surface import Differences, next_points
 from faultpath.analyses.model import Invalid
 from faultpath.faults import FaultText
@@ -34,7 +33,7 @@ Seen = Callable[[float, float], tuple[np.ndarray, np.ndarray]]
 """From two errors to success of the repair and of the baseline, `[scenes]`."""
 
 
-def concluded(differences: Differences, invalid: Invalid | None = None) -> MapRecord:
+def concluded(differences: Differences, invalid: Invalid | None = None) -> MapResult:
     return decided(QUESTION, FACTS, differences, invalid=invalid)
 
 
@@ -53,7 +52,7 @@ def grown(seen: Seen, limit: int = 81) -> Differences:
     return differences(seen, points)
 
 
-def record(seen: Seen, **facts: object) -> MapRecord:
+def record(seen: Seen, **facts: object) -> MapResult:
     return decided(QUESTION, FACTS.model_copy(update=facts), grown(seen))
 
 

@@ -8,8 +8,7 @@ from outcomes import trial
 
 from faultpath.analyses.decide import decide
 from faultpath.analyses.facts import ComparisonFacts, SceneOrder
-from faultpath.analyses.model import CORRECT, SHARED, Condition
-from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.model import CORRECT, SHARED, AuditResult, Condition
 from faultpath.faults import FaultText
 from faultpath.run import Trial, Trials
 from faultpath.run.question import AuditQuestion
@@ -108,7 +107,7 @@ def record(
     altered: Mapping[str, int] = {},
     trained: bool = False,
     **asked: object,
-) -> DecisionRecord:
+) -> AuditResult:
     """Return the record of such trials; `asked` changes the question."""
     first = next(iter(cells.values()))
     seeds = range(len(first)) if isinstance(first, list) else (0,)
@@ -116,7 +115,7 @@ def record(
     return decide(question(**asked), about, conditions(*cells), table(cells, n, **altered))
 
 
-def three(correct: Counts, isolated: Counts, shared: Counts, **changes: object) -> DecisionRecord:
+def three(correct: Counts, isolated: Counts, shared: Counts, **changes: object) -> AuditResult:
     return record({CORRECT: correct, "observer": isolated, SHARED: shared}, **changes)
 
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Any
 
 from faultpath.analyses.scan.analysis import ScanAnalysis, Scanned, scan_analysis
-from faultpath.analyses.scan.record import ScanRecord
+from faultpath.analyses.scan.model import ScanResult
 from faultpath.interface import Channel, Interface, Provenance, Source, Uncertainty
 from faultpath.loop import Taps
 from faultpath.run import Deliveries, Plan, SystemSpec, Trials
@@ -95,7 +95,7 @@ def planned(system: Planted, **arguments: Any) -> ScanAnalysis:
     return scan_analysis(system, SystemSpec(name="planted"), question, system.library("selection"))
 
 
-def scanned(system: Planted, **arguments: Any) -> tuple[ScanRecord, Scanned, list[Plan]]:
+def scanned(system: Planted, **arguments: Any) -> tuple[ScanResult, Scanned, list[Plan]]:
     """Run the rounds of a scan; return its result, what ran, and the plan of each round."""
     analysis = planned(system, **arguments)
     rounds = analysis.rounds()
@@ -108,7 +108,7 @@ def scanned(system: Planted, **arguments: Any) -> tuple[ScanRecord, Scanned, lis
             return analysis.conclude(trials, Deliveries(rows=()), end.value), end.value, plans
 
 
-def names(record: ScanRecord, places: Sequence[int]) -> set[str]:
+def names(record: ScanResult, places: Sequence[int]) -> set[str]:
     """Return errors by source, reader and sign: `a+one`."""
     errors = [record.errors[place] for place in places]
     return {f"{e.source}{'+' if e.sign > 0 else '-'}{e.reader}" for e in errors}

@@ -5,13 +5,14 @@ import pytest
 
 from faultpath.analyses.decide import decide
 from faultpath.analyses.judging import pair_results
-from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.model import AuditResult
+from faultpath.report.sentences.words import words
 from faultpath.run.received.question import JudgeQuestion
 from faultpath.run.received.trial import Received
 from faultpath.system.outcome import Status
 
 
-def judged(trials: list[tuple[str, str, str]], blank: int | None = None, **asked) -> DecisionRecord:
+def judged(trials: list[tuple[str, str, str]], blank: int | None = None, **asked) -> AuditResult:
     """Return the record of two variants over `trials` (task, scene, seed), the repair ahead in each
     third of them; the repair's trial number `blank` has no metric."""
     rows = [
@@ -40,7 +41,7 @@ def test_two_scenes_with_an_extra_seed_leave_the_other_28():
     assert made.scenes == 30
     assert made.facts.seeds == (7,)
     assert made.effects[0].model_copy(update={"missing": None}) == whole.effects[0]
-    (said,) = set(made.findings) - set(whole.findings)
+    (said,) = set(words(made).findings) - set(words(whole).findings)
     assert said == (
         "2 scenes have more trials than the others, for example s3: the extra trials are left out."
     )
@@ -58,7 +59,7 @@ def test_tasks_with_a_scene_less_are_compared_by_what_all_tasks_have():
     trials = [(f"t{n}", f"{scene}", "") for n in range(20) for scene in range(10 - n % 2)]
     made = judged(trials, cluster="task")
     assert made.scenes == 20
-    assert any("10 tasks have more trials than the others" in each for each in made.findings)
+    assert any("10 tasks have more trials than the others" in each for each in words(made).findings)
 
 
 @pytest.mark.parametrize("seeds", [1, 2])
@@ -67,7 +68,7 @@ def test_a_metric_with_a_blank_is_told_of_the_other_scenes_and_that_is_said(seed
     made = judged(trials, blank=4, metrics=["metres:more"])
     assert made.secondary[0].metrics["metres"].n_scenes == 11
     assert made.secondary[0].metrics["metres"].value == 1.0
-    assert any("metres is compared in 11 of 12 scenes" in each for each in made.findings)
+    assert any("metres is compared in 11 of 12 scenes" in each for each in words(made).findings)
     whole = judged(trials, metrics=["metres:more"])
-    assert not any("metres" in each for each in whole.findings)
+    assert not any("metres" in each for each in words(whole).findings)
     assert np.isfinite(whole.secondary[0].metrics["metres"].value)

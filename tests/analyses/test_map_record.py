@@ -9,8 +9,9 @@ from pydantic import ValidationError
 
 from faultpath.analyses.map.joint import Errors, lattice_weights
 from faultpath.analyses.map.lattice import COARSE, SHOWN, UNITS, lattice, surface_weights
-from faultpath.analyses.map.record import MapRecord
+from faultpath.analyses.map.model import MapResult
 from faultpath.analyses.map.surface import Combined, Differences
+from faultpath.report.sentences.words import words
 
 X, Y = np.array(lattice(SHOWN), dtype=float).T / UNITS
 DECIDES = re.compile(r"(new|old) (is|does|is expected)")
@@ -54,8 +55,8 @@ def test_swapping_the_variants_swaps_the_record() -> None:
 @pytest.mark.parametrize("scenes", [1, 2, 4])
 def test_nothing_is_said_to_be_decided_of_a_few_scenes(scenes: int) -> None:
     made = record(reversal(scenes))
-    assert made.headline.startswith(f"Too few scenes: {scenes} compared")
-    assert not DECIDES.search(" ".join((made.headline, *made.sentences)))
+    assert words(made).headline.startswith(f"Too few scenes: {scenes} compared")
+    assert not DECIDES.search(" ".join((words(made).headline, *words(made).sentences)))
     assert not any(point.sign for point in made.points)
     assert made.joint.regions == ()
     assert made.joint.undecided == ((-1.0, 1.0),)
@@ -73,7 +74,7 @@ MAPS = {"a reversal": reversal(100), "two scenes": reversal(2), "ties": alike(40
 @pytest.mark.parametrize("name", MAPS)
 def test_what_is_said_is_what_was_approved(name: str, approved) -> None:
     made = record(MAPS[name], spreads=(0.16, 0.16))
-    approved(name, "\n".join((made.headline, "", *made.sentences)))
+    approved(name, "\n".join((words(made).headline, "", *words(made).sentences)))
 
 
 def _weak(strong: int, sign: int) -> Seen:
@@ -104,7 +105,7 @@ def test_ahead_is_said_only_at_pairs_of_errors_that_were_run(strong: int, sign: 
     )
     if not strong:
         said = "At none of 25 pairs of errors is the difference significant."
-    assert made.headline == said
+    assert words(made).headline == said
 
 
 @pytest.mark.parametrize("name", ["sizes", "difference", "sign"])
@@ -114,7 +115,7 @@ def test_a_surface_has_a_row_and_a_column_for_each_size(name: str) -> None:
     for odd in ((), whole[:-1], [whole[0][:-1], *whole[1:]] if name != "sizes" else whole * 2):
         held["surface"][name] = odd
         with pytest.raises(ValidationError, match="has not a row and a column for each size"):
-            MapRecord.model_validate(held)
+            MapResult.model_validate(held)
 
 
 def test_every_claim_of_a_condition_is_one_of_its_points() -> None:
@@ -144,7 +145,7 @@ def test_a_place_between_points_is_claimed_nowhere() -> None:
         return place[0] < 0.7 - 0.25 * abs(x), place[1] < 0.8 - 0.35 * abs(x - y)
 
     result = concluded(differences(ridge, lattice(COARSE)))
-    text = " ".join((result.headline, *result.sentences))
+    text = " ".join((words(result).headline, *words(result).sentences))
     assert not re.search(r"correlat\w* .*(does better|is ahead|succeed)", text)
     run = {x or y for x, y in (point.errors for point in result.points)}
     assert {flip.until for flip in result.flips} | {flip.first for flip in result.flips} <= {
@@ -156,7 +157,7 @@ def test_a_place_between_points_is_claimed_nowhere() -> None:
 @pytest.mark.parametrize("invalid", ["unrepeatable", "unpaired"])
 def test_a_map_of_trials_on_which_nothing_rests_claims_nothing(invalid) -> None:
     result = concluded(grown(reversal(100)), invalid=invalid)
-    assert result.headline.startswith("No result: ")
-    assert result.sentences == ()
+    assert words(result).headline.startswith("No result: ")
+    assert words(result).sentences == ()
     assert not any(point.sign for point in result.points)
     assert not any(flip.start or flip.turned for flip in result.flips)

@@ -19,14 +19,14 @@ from outcome_tables import (
 
 from faultpath.analyses.decide import decide
 from faultpath.analyses.effects import Change, Effect
-from faultpath.analyses.model import CORRECT, SHARED
-from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences import phrases, wording
-from faultpath.analyses.sentences.answers import answers
-from faultpath.analyses.sentences.phrases import in_short
-from faultpath.analyses.sentences.shares import ahead
+from faultpath.analyses.model import CORRECT, SHARED, AuditResult
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
+from faultpath.report.sentences import phrases, wording
+from faultpath.report.sentences.answers import answers
+from faultpath.report.sentences.phrases import in_short
+from faultpath.report.sentences.shares import ahead
+from faultpath.report.sentences.words import words
 from faultpath.run import Trials
 from faultpath.run.question import StopWhen
 from faultpath.system import Status
@@ -82,7 +82,7 @@ they did."""
 
 def run(
     shape: str, over: tuple[str, ...], n: int, how: str, trained: bool, rule: str = ""
-) -> DecisionRecord:
+) -> AuditResult:
     seeds = (0, 1, 2) if "seeds" in how else (0,)
     out = []
     for seed in seeds:
@@ -102,14 +102,14 @@ def run(
     return decide(asked, about, conditions(*over), Trials.of(out))
 
 
-def sentences(made: DecisionRecord) -> Iterator[str]:
-    yield made.headline
-    yield from made.sentences
-    yield from made.would_change
+def sentences(made: AuditResult) -> Iterator[str]:
+    yield words(made).headline
+    yield from words(made).sentences
+    yield from words(made).would_change
     yield from answers(made).values()
 
 
-def holm(made: DecisionRecord, tested: list[Effect | Change]) -> list[float]:
+def holm(made: AuditResult, tested: list[Effect | Change]) -> list[float]:
     """Return p-values by Holm's procedure, weighted where the rule is."""
     primary = [isinstance(e, Effect) and e.condition == made.facts.primary for e in tested]
     weighted = any(primary)
@@ -123,7 +123,7 @@ def holm(made: DecisionRecord, tested: list[Effect | Change]) -> list[float]:
     return adjusted
 
 
-def shared_out(made: DecisionRecord, tested: list[Effect | Change]) -> list[float]:
+def shared_out(made: AuditResult, tested: list[Effect | Change]) -> list[float]:
     """Return p-values by the shares of all that a sequential audit could have announced."""
     named = {condition.name for condition in made.conditions}
     others = len(named) - 1 + (len(named - {CORRECT, SHARED}) if SHARED in named else 0)
@@ -135,7 +135,7 @@ def shared_out(made: DecisionRecord, tested: list[Effect | Change]) -> list[floa
     return adjusted
 
 
-def may_be_said(made: DecisionRecord) -> tuple[dict[str, int], dict[str, int]]:
+def may_be_said(made: AuditResult) -> tuple[dict[str, int], dict[str, int]]:
     """Return the signs that the numbers allow, of effects and of changes, worked out anew."""
     tested: list[Effect | Change] = [e for e in made.effects if e.acted]
     tested += made.changes
@@ -157,7 +157,7 @@ def claimed(text: str, who: str) -> bool:
     return bool(re.search(rf"\b{who} (is ahead|succeeds more often|does \(|is(\.| \(for))", text))
 
 
-def check(made: DecisionRecord) -> None:
+def check(made: AuditResult) -> None:
     effects, changes = may_be_said(made)
     whole = " ".join(sentences(made))
     for who, sign in SIDES:
@@ -166,7 +166,7 @@ def check(made: DecisionRecord) -> None:
         headed = {
             e.condition for e in made.effects if effects.get(e.condition) == sign and not e.extreme
         }
-        assert not claimed(made.headline, who) or headed
+        assert not claimed(words(made).headline, who) or headed
     for change in made.changes:
         opposite = effects[change.isolated] * effects[SHARED] < 0
         said = phrases.change(made, change)
@@ -205,23 +205,23 @@ def check(made: DecisionRecord) -> None:
             assert claimed(short, who) == (effects.get(effect.condition, 0) == side)
     frequencies = [(item, CORRECT, item.condition) for item in made.break_even]
     for item, *at in (*frequencies, *((b, b.condition, SHARED) for b in made.break_even_beta)):
-        words = ahead(made.question, item, at[1] == SHARED)
+        over = ahead(made.question, item, at[1] == SHARED)
         ends = {effects.get(condition, 0) for condition in at} - {0}
         for who, sign in SIDES:
-            assert not claimed(words, who) or sign in ends
+            assert not claimed(over, who) or sign in ends
         shown = wording.break_even(item.result)
-        part = " is ahead where " in words
-        assert (shown == "any") == (not words or part), (shown, words)
+        part = " is ahead where " in over
+        assert (shown == "any") == (not over or part), (shown, over)
         assert item.result.level >= 0.95 - 1e-12
     if made.facts.primary not in {e.condition for e in made.effects}:
-        assert "no pair of trials is left" in made.headline
+        assert "no pair of trials is left" in words(made).headline
     elif made.scenes < made.testing.scenes_needed:
-        assert made.headline.startswith("Too few scenes")
-        assert str(made.testing.scenes_needed) in made.headline
+        assert words(made).headline.startswith("Too few scenes")
+        assert str(made.testing.scenes_needed) in words(made).headline
 
 
-def reads_well(made: DecisionRecord) -> None:
-    assert len(re.sub(r" \([^()]*\)\.$", "", made.headline).split()) <= MOST_WORDS
+def reads_well(made: AuditResult) -> None:
+    assert len(re.sub(r" \([^()]*\)\.$", "", words(made).headline).split()) <= MOST_WORDS
     for sentence in sentences(made):
         assert sentence[0].isupper() or sentence.startswith((REPAIR, BASELINE))
         assert sentence.endswith(".")
@@ -244,12 +244,12 @@ def test_no_sentence_claims_what_was_not_decided(n: int, how: str, over: str) ->
         reads_well(made)
 
 
-def says_how_it_stopped(made: DecisionRecord) -> None:
+def says_how_it_stopped(made: AuditResult) -> None:
     """Check what is said of stopping, and that nothing is shown that needs a fixed number."""
     held, asked, about = made.stopped, made.question, made.facts
     assert held
     assert about.order
-    told = next(s for s in made.sentences if s.startswith("This audit was sequential"))
+    told = next(s for s in words(made).sentences if s.startswith("This audit was sequential"))
     most = about.n_scenes
     signs = may_be_said(made)[0]
     decided = {condition for condition, sign in signs.items() if sign} | set(held.small)
@@ -269,7 +269,7 @@ def says_how_it_stopped(made: DecisionRecord) -> None:
         assert effect.least_pp is None
         for other in (secondary.time_s, *secondary.metrics.values()):
             assert other is None or (other.low, other.high) == (None, None)
-    assert "differ by less than" not in made.headline or about.primary in held.small
+    assert "differ by less than" not in words(made).headline or about.primary in held.small
     whole = made.model_dump_json()
     for fixed in ("Holm", "80 % power", "McNemar", "sign test", "Tango", "bootstrap", "score"):
         assert fixed not in whole

@@ -7,10 +7,9 @@ from itertools import product
 from outcome_tables import BASELINE, MOST_WORDS, REPAIR, record, sequential
 
 from faultpath.analyses.effects import Effect
-from faultpath.analyses.model import CORRECT, SHARED
-from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences.answers import answers
-from faultpath.analyses.sentences.wording import where
+from faultpath.analyses.model import CORRECT, SHARED, AuditResult, where
+from faultpath.report.sentences.answers import answers
+from faultpath.report.sentences.words import words
 
 State = tuple[int, str]
 """Who is decided to be ahead, and what is special: `floor`, `idle`, `small`."""
@@ -21,7 +20,7 @@ SIDES = {REPAIR: 1, BASELINE: -1}
 FOUR = record(dict.fromkeys((CORRECT, "a", "b", SHARED), (50, 5, 5)))
 
 
-def made(states: dict[str, State], primary: str, turned: str = "") -> DecisionRecord:
+def made(states: dict[str, State], primary: str, turned: str = "") -> AuditResult:
     """Return a record with these decisions; at the module `turned` an interaction is detected."""
     effects: list[Effect] = []
     for effect in FOUR.effects:
@@ -49,7 +48,7 @@ def made(states: dict[str, State], primary: str, turned: str = "") -> DecisionRe
     update |= {"question": question, "facts": facts}
     partial = FOUR.model_copy(update=update | {"break_evens": ()})
     if small:
-        partial = DecisionRecord.model_validate(partial.model_dump() | {"stopped": held})
+        partial = AuditResult.model_validate(partial.model_dump() | {"stopped": held})
     return partial
 
 
@@ -59,7 +58,7 @@ def turn(states: dict[str, State], isolated: str, turned: str) -> str:
     return "interaction" if turned == isolated else "none"
 
 
-def combinations() -> Iterator[DecisionRecord]:
+def combinations() -> Iterator[AuditResult]:
     """Yield all that three or four conditions can be decided to be, with every primary contrast."""
     special = (*PLAIN, FLOOR, WON_AT_THE_FLOOR, IDLE, SMALL)
     for correct, a, shared in product((*PLAIN, FLOOR), special, special):
@@ -73,7 +72,7 @@ def combinations() -> Iterator[DecisionRecord]:
         yield from (made({CORRECT: correct, "a": a}, primary) for primary in (CORRECT, "a"))
 
 
-def holds(said: str, it: DecisionRecord) -> None:
+def holds(said: str, it: AuditResult) -> None:
     """Check each clause of a headline against the decisions."""
     of = {effect.condition: effect for effect in it.effects}
     leads = {condition: effect.sign for condition, effect in of.items() if effect.leads}
@@ -113,7 +112,7 @@ def places(clause: str, conditions: list[str]) -> Iterator[str]:
 def test_every_headline_is_short_and_true() -> None:
     seen = 0
     for it in combinations():
-        said, seen = it.headline, seen + 1
+        said, seen = words(it).headline, seen + 1
         assert len(said.split()) <= MOST_WORDS, said
         assert said.endswith("."), said
         assert "trained" not in said

@@ -18,6 +18,7 @@ from outcome_tables import (
 from faultpath.analyses.decide import decide
 from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.core.errors import UserError
+from faultpath.report.sentences.words import words
 from faultpath.run import Trials
 from faultpath.system import Status
 
@@ -121,8 +122,8 @@ def test_a_condition_without_any_pair_costs_the_others_nothing_and_is_named():
     assert (correct.condition, correct.scenes, correct.void) == (CORRECT, 100, 0)
     assert not made.break_even
     said = "With the fault at the observer alone, no pair of trials is left to compare"
-    assert made.headline.startswith(said)
-    assert made.findings[0].startswith(said)
+    assert words(made).headline.startswith(said)
+    assert words(made).findings[0].startswith(said)
     every += tuple((REPAIR, CORRECT, i) for i in range(100))
     with pytest.raises(UserError, match="no scene is left"):
         decide(question(), facts(), conditions(CORRECT, "observer"), _with_failures(*every))
@@ -143,8 +144,8 @@ def test_seeds_that_change_nothing_are_counted_once():
     for many, one in zip(thrice.effects, once.effects, strict=True):
         assert many == one
         assert many.won == one.won
-    assert "All 3 seeds gave the same outcome in every trial" in " ".join(thrice.sentences)
-    assert "seeds" not in " ".join(once.sentences)
+    assert "All 3 seeds gave the same outcome in every trial" in " ".join(words(thrice).sentences)
+    assert "seeds" not in " ".join(words(once).sentences)
 
 
 @pytest.mark.parametrize(

@@ -7,10 +7,10 @@ import pytest
 from outcome_tables import BASELINE, REPAIR, SCENES, conditions, facts, question, rows
 
 from faultpath.analyses.decide import decide
-from faultpath.analyses.model import CORRECT, SHARED
-from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences.answers import answers
-from faultpath.analyses.sentences.phrases import in_short
+from faultpath.analyses.model import CORRECT, SHARED, AuditResult
+from faultpath.report.sentences.answers import answers
+from faultpath.report.sentences.phrases import in_short
+from faultpath.report.sentences.words import words
 from faultpath.run import Trials
 from faultpath.system import Status
 
@@ -20,7 +20,7 @@ Ends = list[Status]
 
 def audit(
     correct: tuple[Ends, Ends], shared: tuple[Ends, Ends] | None = None, *seeds: tuple[Ends, Ends]
-) -> DecisionRecord:
+) -> AuditResult:
     """Return the record of ends of repair and baseline, by the rule in force; `seeds` are the ends
     under correct inputs with further seeds."""
     over = [(CORRECT, 0, correct), *((CORRECT, n, each) for n, each in enumerate(seeds, 1))]
@@ -55,8 +55,8 @@ def test_what_hangs_on_one_trial_is_open_and_what_does_not_is_decided():
     assert effect.p_value < 0.05
     said = in_short(open_, effect)
     assert "failed" in said
-    assert "failed" in open_.headline.lower()
-    assert "no difference" not in " ".join((open_.headline, said)).lower()
+    assert "failed" in words(open_).headline.lower()
+    assert "no difference" not in " ".join((words(open_).headline, said)).lower()
     left_open = answers(open_)["Left open"]
     assert "the trials that ran favour new (+5.1 [1.1, 11.3] pp, p = 0.023" in left_open
     assert "holds if failing has nothing to do with how a trial would have ended" in left_open
@@ -66,7 +66,7 @@ def test_what_hangs_on_one_trial_is_open_and_what_does_not_is_decided():
     )
     safe = audit((lost, [*[NO] * 20, *rest[15:], YES]))
     assert safe.effects[0].sign == 1
-    assert "new is ahead" in safe.headline
+    assert "new is ahead" in words(safe).headline
 
 
 def test_a_failure_on_one_condition_costs_the_others_nothing():
@@ -98,7 +98,7 @@ def test_no_reversal_rests_on_a_condition_where_one_variant_fails_more_often():
     assert shared.sign == -1
     assert (shared.uneven, shared.leads) == (True, False)
     assert made.changes[0].turn != "reversal"
-    assert "Do not choose" not in made.headline
+    assert "Do not choose" not in words(made).headline
 
 
 def test_what_is_missing_of_a_seed_that_repeats_another_is_open():
@@ -116,7 +116,7 @@ def test_what_is_missing_of_a_seed_that_repeats_another_is_open():
     assert effect.missing.against_pp < effect.value
     assert effect.sign == 0
     assert effect.ahead == (16, 20)
-    assert "new is ahead" not in result.headline
+    assert "new is ahead" not in words(result).headline
 
 
 def test_a_pair_of_which_both_trials_failed_could_have_gone_either_way():
@@ -131,7 +131,7 @@ def test_a_pair_of_which_both_trials_failed_could_have_gone_either_way():
         (-40 / 3, 160 / 3)
     )
     assert (effect.sign, effect.unsettled, effect.leads) == (0, True, False)
-    (said,) = [text for text in made.findings if "failed" in text]
+    (said,) = [text for text in words(made).findings if "failed" in text]
     assert "lies anywhere from −13.3 to +53.3 pp" in said
 
 
@@ -181,10 +181,10 @@ def test_trials_that_do_not_repeat_or_are_no_pairs_support_nothing(invalid):
     table, over = Trials.of(trials), conditions(CORRECT, "observer", SHARED)
     made = decide(question(), facts(), over, table, repeats=invalid == "unpaired")
     assert made.invalid == invalid
-    assert made.headline.startswith("No result: ")
+    assert words(made).headline.startswith("No result: ")
     assert not any(item.sign for item in (*made.effects, *made.changes))
     assert not any(item.result.regions for item in (*made.break_even, *made.break_even_beta))
-    whole = " ".join((made.headline, *made.sentences, *answers(made).values()))
+    whole = " ".join((words(made).headline, *words(made).sentences, *answers(made).values()))
     assert "ahead" not in whole
     assert "succeeds more often" not in whole
 
@@ -193,13 +193,13 @@ def test_a_headline_says_in_how_few_scenes_it_shows():
     scene = np.arange(SCENES)
     few = audit((ends(scene < 54), ends(scene < 50)))
     more = audit((ends(scene < 60), ends(scene < 50)))
-    assert few.headline == (
+    assert words(few).headline == (
         "new is ahead of old under correct inputs (in 4 scenes, never the other way)."
     )
-    assert "(" not in more.headline
+    assert "(" not in words(more).headline
 
 
-def mixed(stream: np.random.Generator) -> DecisionRecord:
+def mixed(stream: np.random.Generator) -> AuditResult:
     """Return a record of which the repair's trials that end badly without the fault fail."""
     scene = np.arange(SCENES)
     lost, won = stream.random((2, SCENES)) < [[0.35], [0.6]]
@@ -229,4 +229,4 @@ def test_break_even_without_open_trials_stays_what_it_was():
     whole = audit((ends(~lost), ends(every)), (ends(won), ends(none)))
     voided = audit((ends(~lost, both), ends(every, both)), (ends(won), ends(none)))
     assert whole.break_even[-1].result.kind == voided.break_even[-1].result.kind == "interval"
-    assert voided.findings
+    assert words(voided).findings

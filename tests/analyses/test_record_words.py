@@ -5,12 +5,12 @@ from outcome_tables import Counts, conditions, facts, question, record, table, t
 from outcomes import trial
 
 from faultpath.analyses.decide import decide
-from faultpath.analyses.model import CORRECT, SHARED
-from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences.answers import answers
-from faultpath.analyses.sentences.phrases import change, estimand, in_short
-from faultpath.analyses.sentences.shares import ahead
+from faultpath.analyses.model import CORRECT, SHARED, AuditResult
 from faultpath.core.errors import UserError
+from faultpath.report.sentences.answers import answers
+from faultpath.report.sentences.phrases import change, estimand, in_short
+from faultpath.report.sentences.shares import ahead
+from faultpath.report.sentences.words import words
 from faultpath.run import Trials
 from faultpath.system import Status
 
@@ -51,7 +51,7 @@ CASES = {
 }
 
 
-def failing(condition: str) -> DecisionRecord:
+def failing(condition: str) -> AuditResult:
     """Return a record of which every trial of the repair under a condition failed."""
     cells = {CORRECT: (40, 20, 10), "observer": (20, 10, 30)}
     return decide(question(), facts(), conditions(*cells), lost(cells, condition))
@@ -68,16 +68,16 @@ def lost(cells: dict[str, Counts | list[Counts]], condition: str, seed: int = 0)
     )
 
 
-def text_of(made: DecisionRecord) -> str:
+def text_of(made: AuditResult) -> str:
     """Return all that is said: headline, answers, remarks, changes, and each effect in short."""
-    lines = [made.headline, f"Of {estimand(made.question, made.facts)}.", ""]
+    lines = [words(made).headline, f"Of {estimand(made.question, made.facts)}.", ""]
     lines += [f"{label}: {said}" for label, said in answers(made).items()]
     lines += [
         "",
         *(change(made, of) for of in made.changes),
-        *made.findings,
+        *words(made).findings,
         "",
-        *made.would_change,
+        *words(made).would_change,
     ]
     lines += [f"{effect.condition}: {in_short(made, effect)}" for effect in made.effects]
     lines += [f"{of.condition}, how often: {ahead(made.question, of)}" for of in made.break_even]

@@ -9,9 +9,10 @@ import yaml
 from scan_toy import Cost, Planted, names, planned, scanned
 
 from faultpath.analyses.scan.analysis import COSTLY_PP, FIRST_SCENES, HALVINGS, TRIALS
+from faultpath.analyses.scan.model import ScanResult
 from faultpath.analyses.scan.ranking import PROBED_SCENES
-from faultpath.analyses.scan.record import ScanRecord
 from faultpath.core.errors import UserError
+from faultpath.report.sentences.words import words
 from faultpath.stats.cancelling import LEVEL, MOST, REGAINED
 from faultpath.stats.estimate import ALPHA
 
@@ -28,7 +29,7 @@ def covered(at: Any) -> float:
     return 0.4 if at.get("one.pair") and not at.get("two.pair") else 0.0
 
 
-def listed(record: ScanRecord, version: int = 0) -> list[tuple[str | None, set[str]]]:
+def listed(record: ScanResult, version: int = 0) -> list[tuple[str | None, set[str]]]:
     return [(pair.kind, names(record, pair.errors)) for pair in record.versions[version].listed]
 
 
@@ -47,8 +48,8 @@ def test_only_errors_that_cancel_are_listed(cost: Cost, sources: str, pairs: lis
     record, *_ = scanned(Planted(cost, tuple(sources)))
     assert [of for _, of in listed(record)] == pairs
     assert all(kind == "cancel" for kind, _ in listed(record))
-    assert len(record.commands) == len(pairs)
-    assert ("no pair of errors is shown to cancel" in record.headline.lower()) == (not pairs)
+    assert len(words(record).commands) == len(pairs)
+    assert ("no pair of errors is shown to cancel" in words(record).headline.lower()) == (not pairs)
 
 
 SAID = {
@@ -68,7 +69,12 @@ SAID = {
 def test_what_is_said_is_what_was_approved(name: str, approved):
     cost, sources, arguments = SAID[name]
     record, *_ = scanned(Planted(cost, sources), **arguments)
-    approved(name, "\n".join((record.headline, "", *record.sentences, "", *record.commands)))
+    approved(
+        name,
+        "\n".join(
+            (words(record).headline, "", *words(record).sentences, "", *words(record).commands)
+        ),
+    )
 
 
 def test_an_error_that_raises_success_goes_no_further():
@@ -166,7 +172,7 @@ def test_seeds_count_as_one_scene_and_failed_trials_are_left_out():
         len(scan.second),
     ]
     assert record.failed == 4
-    assert [text for text in record.sentences if text.startswith("4 trials failed")]
+    assert [text for text in words(record).sentences if text.startswith("4 trials failed")]
     system.failing = {(pair, f"s{i:04d}") for i in range(400)}
     with pytest.raises(UserError, match="is left, because all failed"):
         scanned(system)
@@ -176,9 +182,9 @@ def test_trials_that_are_no_pairs_give_no_result():
     system = Planted(both("one.a", "two.b"))
     system.unlike = {("a:offset=-0.4@one & b:offset=0.4@two", "s0060")}
     record, *_ = scanned(system)
-    assert (record.invalid, listed(record), record.sentences) == ("unpaired", [], ())
-    assert "s0060" in record.findings[0]
-    assert record.commands == ()
+    assert (record.invalid, listed(record), words(record).sentences) == ("unpaired", [], ())
+    assert "s0060" in words(record).findings[0]
+    assert words(record).commands == ()
 
 
 def test_at_most_ten_errors_go_on_and_the_worst_first():
@@ -218,7 +224,7 @@ def test_a_system_that_says_no_size_is_asked_for_one():
 def test_the_page_has_the_numbers_of_the_code():
     page = " ".join((ROOT / "docs" / "scan.md").read_text().split())
     count = {3: "three", 5: "five", 10: "ten"}
-    for words in (
+    for phrase in (
         f"**First stage**, {FIRST_SCENES} scenes",
         f"costs more than {COSTLY_PP:g} percentage points is halved",
         f"up to {count[HALVINGS]} times",
@@ -229,7 +235,7 @@ def test_the_page_has_the_numbers_of_the_code():
         f"Tested apart, at {100 * ALPHA:g} %",
         f"in {count[PROBED_SCENES]} scenes",
     ):
-        assert words in page, words
+        assert phrase in page, phrase
 
 
 def test_errors_that_cannot_act_together_are_no_scan():

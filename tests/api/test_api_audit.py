@@ -14,8 +14,9 @@ from toy_audits import AUDIT, FILE, TOY
 import faultpath
 from faultpath.api.display import Display
 from faultpath.core.files.parquet import read_table
+from faultpath.report.audit_tables import markdown_table
 from faultpath.report.html import report_page
-from faultpath.report.tables import markdown_table
+from faultpath.report.sentences.words import words
 from faultpath.report.terminal import decision
 from faultpath.run.store.folder import OUTCOMES
 from faultpath.run.store.signals import encode_signals
@@ -55,12 +56,12 @@ def _outcomes(run: faultpath.Run) -> list[tuple]:
 
 
 def test_a_run_holds_what_was_decided_and_from_what(run):
-    assert "blind" in run.record.headline
+    assert "blind" in run.headline
     assert run.record.facts.n_scenes == 12
     assert run.failed == 0
     assert isinstance(run.table(), pa.Table)
     assert run.table().num_rows == 12 * 2 * 4
-    assert run.record.headline in repr(run)
+    assert run.headline in repr(run)
     (called,) = run.provenance.command
     assert called.startswith(f"faultpath.audit(system={TOY!r}, ")
     assert "baseline='calibrated'" in called
@@ -93,7 +94,7 @@ def test_a_folder_that_is_none_is_named_and_a_notebook_shows_a_run(run):
     with pytest.raises(faultpath.UserError, match=r"nowhere holds no provenance\.json"):
         faultpath.open_run("nowhere")
     shown = run._repr_markdown_()
-    assert run.record.headline.partition(" ")[0] in shown
+    assert run.headline.partition(" ")[0] in shown
     assert "Won:lost" in shown
 
 
@@ -206,8 +207,8 @@ def test_a_sequential_audit_stops_and_says_so(early):
     flown = set(early.table()["scene"].to_pylist())
     assert flown == set(record.facts.order.scenes[: record.stopped.scenes])
     assert record.effects[-1].sign == -1  # under the shared fault, for the baseline
-    assert "ahead" in record.headline
-    assert f"{record.stopped.scenes} scenes of at most 60" in " ".join(record.sentences)
+    assert "ahead" in words(record).headline
+    assert f"{record.stopped.scenes} scenes of at most 60" in " ".join(words(record).sentences)
 
 
 def test_a_sequential_audit_resumes_to_the_same_record(early, tmp_path):
@@ -223,4 +224,4 @@ def test_a_sequential_audit_without_an_end_takes_all(tmp_path):
     asked = {**SEQUENTIAL, "scenes": 6, "stop_when": "all-decided", "margin_pp": 15}
     record = faultpath.audit(TOY, folder=tmp_path / "run", **asked).record
     assert (record.stopped.scenes, record.stopped.reached) == (6, False)
-    assert record.headline.startswith("Too few scenes")
+    assert words(record).headline.startswith("Too few scenes")

@@ -6,7 +6,7 @@ import pytest
 from toy_audits import AUDIT, TOY
 
 import faultpath
-from faultpath.analyses.sentences.answers import answers
+from faultpath.report.sentences.answers import answers
 
 AUDIT_MODULE = import_module("faultpath.api.audit")
 FIVE_PERCENT = "at most 5 % of audits would report any difference"
@@ -22,7 +22,7 @@ def audited(**asked) -> faultpath.Run:
 
 
 def said(run: faultpath.Run) -> str:
-    return " ".join((*run.record.findings, *answers(run.record).values()))
+    return " ".join((*run.words.findings, *answers(run.record).values()))
 
 
 def test_more_scenes_in_the_same_folder_leave_a_trace_that_stays(monkeypatch):

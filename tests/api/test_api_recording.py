@@ -65,7 +65,7 @@ def test_a_stop_while_signals_are_recorded_leaves_a_finished_audit(tmp_path, mon
     run = faultpath.audit(FILE, **ASKED, folder=tmp_path / "run")
     assert (run.folder / "report.html").is_file()
     assert not (run.folder / SIGNALS).exists()
-    assert not run.record.findings
+    assert not run.words.findings
 
 
 @pytest.mark.parametrize("second", ["raises", "ends", "differs"])
@@ -93,6 +93,6 @@ def test_a_system_that_does_not_fly_again_is_a_finding(tmp_path, second) -> None
     )
     run = faultpath.audit(system, **ASKED, folder=tmp_path / "run")
     assert not (run.folder / SIGNALS).exists()
-    said = next(each for each in run.record.findings if "signals" in each.lower())
+    said = next(each for each in run.words.findings if "signals" in each.lower())
     assert {"raises": "not again", "ends": "sys.exit(3)", "differs": "time_s"}[second] in said
     assert said in (run.folder / "report.html").read_text("utf-8").replace("&#39;", "'")

@@ -14,6 +14,7 @@ from faultpath.api.folders import read_run
 from faultpath.api.replaying import chosen_scenes, keep_signals, replay, where_parted
 from faultpath.cli.replay import replay as command
 from faultpath.core.errors import UserError
+from faultpath.run.findings import Deviation
 from faultpath.run.store.signals import IN_FORCE, SIGNALS, Signal
 from faultpath.run.store.tables import TrialAddress
 from faultpath.run.trials import Trials
@@ -41,7 +42,7 @@ def _signals(found, variant: str, condition: str) -> dict[str, Signal]:
 
 def test_a_replay_is_the_run_and_hears_what_the_fault_did(found) -> None:
     assert len(found) == 8
-    assert not any(each.differs for each in found)
+    assert not any(each.deviation for each in found)
     heard = _signals(found, "calibrated", "shared")
     gain = heard["gain_estimate"].values
     assert gain.shape == (100, 1)
@@ -81,11 +82,11 @@ def test_a_trial_that_comes_out_otherwise_is_told_and_not_heard(folder) -> None:
     )
     changed = replace(source, trials=Trials.of(rows))
     found = replay(changed, (SCENE,), ("shared", "observer"), trust=True).trials
-    differs = {each.address.condition: bool(each.differs) for each in found}
+    differs = {each.address.condition: bool(each.deviation) for each in found}
     assert differs == {"shared": True, "observer": False}
     for each in found:
-        assert ("time_s by up to 1" in each.differs) == bool(each.differs)
-        assert bool(each.signals) != bool(each.differs)
+        assert ("time_s by up to 1" in str(each.deviation)) == bool(each.deviation)
+        assert bool(each.signals) != bool(each.deviation)
 
 
 def test_only_scenes_and_conditions_of_a_run_that_can_be_built_are_run_again(folder) -> None:
@@ -133,7 +134,8 @@ def test_the_verb_says_where_versions_and_conditions_part(folder, capsys) -> Non
 
 def test_trials_that_came_out_otherwise_are_not_compared(folder, found) -> None:
     source = read_run(folder)
-    unlike = [replace(each, differs="time_s") if i == 0 else each for i, each in enumerate(found)]
+    other = Deviation(scenes=(SCENE,), of=1, gaps=(("time_s", 1.0),))
+    unlike = [replace(found[0], deviation=other), *found[1:]]
     first = unlike[0].address
     left = where_parted(source, unlike, [SCENE])
     assert len(left) == 3

@@ -11,6 +11,7 @@ from toy_audits import ROOT
 
 import faultpath
 from faultpath.core.errors import UserError
+from faultpath.report.sentences.words import words
 
 REFERENCE = ROOT / "docs" / "reference"
 
@@ -59,7 +60,7 @@ def test_compare_on_the_command_line(toy: Path, tmp_path: Path) -> None:
     assert "are the same, and so are the outcomes, bit for bit" in shown
     assert "the two are not shown to differ" in shown
     record = faultpath.open_run(toy).record
-    assert shown.count(record.headline) == 4
+    assert shown.count(words(record).headline) == 4
     assert (tmp_path / "page.html").stat().st_size < 3_000_000
     told = json.loads(command("report", *folders, "--json").out)
     assert told["headline"] in shown

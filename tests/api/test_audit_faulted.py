@@ -4,8 +4,7 @@ import pytest
 from toy_audits import TOY
 
 from faultpath.analyses.audit import AuditAnalysis, audit_analysis
-from faultpath.analyses.model import FaultedTap
-from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.model import AuditResult, FaultedTap
 from faultpath.faults import FaultText
 from faultpath.run import SystemSpec, load_system
 from faultpath.run.execution.runner import run_plan
@@ -22,7 +21,7 @@ def asked(text: str) -> AuditAnalysis:
     return audit_analysis(system, spec, question, system.library("carts"))
 
 
-def faulted(record: DecisionRecord) -> dict[str, tuple[tuple[FaultedTap, ...], ...]]:
+def faulted(record: AuditResult) -> dict[str, tuple[tuple[FaultedTap, ...], ...]]:
     return {
         condition.name: (condition.faulted, condition.baseline_faulted)
         for condition in record.conditions

@@ -47,7 +47,7 @@ def test_an_audits_own_outcomes_are_decided_as_the_audit(tmp_path: Path) -> None
     turns = [[each.turn for each in each.record.changes] for each in (run, again)]
     assert turns[0] == turns[1]
     assert "reversal" in turns[1]
-    assert again.record.headline == run.record.headline
+    assert again.headline == run.headline
     assert again.record.facts.pairing == "hashes"
     assert list(again.provenance.code.data) == [str(results)]
 
@@ -91,7 +91,7 @@ def test_what_other_tools_write_is_read(
     assert run.record.secondary[0].time_s is None
     assert run.record.facts.pairing == pairing
     assert run.table().column("time_s").null_count == 60
-    said = " ".join(run.record.sentences)
+    said = " ".join(run.sentences)
     assert ("by their keys alone" in said) == (pairing == "keys")
     assert "correct inputs" not in said + run.headline
 
@@ -114,7 +114,7 @@ def test_missing_pairs_are_named_and_bound_what_is_decided(tmp_path: Path) -> No
         assert each.missing.against_pp == pytest.approx(against)
         assert each.missing.favour_pp == pytest.approx(favour)
     assert not shared.sign
-    found = " ".join(run.record.findings)
+    found = " ".join(run.words.findings)
     assert "Under the shared fault, 9 trials of new are missing, for example that in s0" in found
     assert "1 trial of old is missing, for example that in s19 (seed 0)" in found
     assert run.failed == 11
@@ -127,7 +127,7 @@ def test_trials_that_began_otherwise_are_no_pair(tmp_path: Path) -> None:
     assert run.record.effects[0].void == 1
     assert run.headline == "No result: the two versions did not meet the same conditions."
     assert run.broken
-    assert any("are no pair in scene 's3'" in said for said in run.record.findings)
+    assert any("are no pair in scene 's3'" in said for said in run.words.findings)
 
 
 def test_a_task_with_all_of_its_scenes_is_one_of_few(tmp_path: Path) -> None:
@@ -145,7 +145,7 @@ def test_a_task_with_all_of_its_scenes_is_one_of_few(tmp_path: Path) -> None:
     assert "new tasks like these" in " ".join(run.sentences)
     assert run.headline.startswith("Too few scenes")
     by_scene = judged(file, tmp_path / "scenes")
-    assert any("--cluster task" in said for said in by_scene.record.findings)
+    assert any("--cluster task" in said for said in by_scene.words.findings)
 
 
 @pytest.mark.parametrize("n", [1, 2, 4])
@@ -154,7 +154,7 @@ def test_few_scenes_and_ties_claim_nothing(n: int, won: tuple[bool, bool], tmp_p
     variants = {"old": [won[0]] * n, "new": [won[1]] * n}
     run = judged(table(tmp_path / "few.csv", {"": variants}), tmp_path / "run")
     assert run.headline.startswith("Too few scenes")
-    assert not any("more often" in said for said in run.record.sentences)
+    assert not any("more often" in said for said in run.sentences)
 
 
 ROW = "old,s0,0,,1,h\nnew,s0,0,,1,h\n"

@@ -11,8 +11,8 @@ import pytest
 from cli_runs import ROOT, TOY, Ended, audit, faultpath
 
 from faultpath import open_run
-from faultpath.analyses.gate import ASKS
 from faultpath.core.errors import UserError
+from faultpath.report.gate import ASKS
 
 COLUMNS = {
     "variant": "variant",

@@ -11,8 +11,9 @@ import pytest
 from cli_runs import TOY, edit, faultpath, flags, shards
 
 import faultpath as library
-from faultpath.analyses.scan.record import ScanRecord
+from faultpath.analyses.scan.model import ScanResult
 from faultpath.cli.main import INTERRUPTED
+from faultpath.report.sentences.words import words
 from faultpath.run.store.folder import RunFolder
 
 QUESTIONS: dict[str, dict[str, object]] = {
@@ -52,7 +53,7 @@ def scan_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_a_map_leaves_its_record_pictures_and_page(map_run: Path) -> None:
     record = library.open_run(map_run).record
-    assert record.headline in (map_run / "report.html").read_text()
+    assert words(record).headline in (map_run / "report.html").read_text()
     for name in ("map.svg", "correlation.svg"):
         assert ElementTree.fromstring((map_run / name).read_text()).tag.endswith("svg")
     circles = (map_run / "map.svg").read_text().count("<circle")
@@ -71,7 +72,7 @@ class _Texts(HTMLParser):
 
 def test_a_scan_lists_the_pairs_that_cancel_and_its_page_shows_them(scan_run: Path) -> None:
     record = library.open_run(scan_run).record
-    assert isinstance(record, ScanRecord)
+    assert isinstance(record, ScanResult)
     calibrated, blind = record.versions
     listed = {tuple(record.errors[e].text for e in pair.errors) for pair in calibrated.listed}
     sizes = ("gain:scale=0.8", "gain:scale=1.2")
@@ -81,10 +82,10 @@ def test_a_scan_lists_the_pairs_that_cancel_and_its_page_shows_them(scan_run: Pa
 
     page = (scan_run / "report.html").read_text()
     texts = " ".join(" ".join(_Texts(page).texts).split())
-    assert record.headline.split(", ")[1] in texts
+    assert words(record).headline.split(", ")[1] in texts
     for pair in calibrated.listed:
         assert f"{pair.both:.0f} % with both, {pair.none:.0f} % with neither" in texts
-    assert all(command in texts for command in record.commands)
+    assert all(command in texts for command in words(record).commands)
     pictures = page.count('role="img"')
     assert pictures == 2 + 2, "a triangle a version, and a strip a listed pair"
     assert page.count("<desc") == pictures

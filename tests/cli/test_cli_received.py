@@ -137,7 +137,7 @@ FORGED: dict[str, tuple[str, Change]] = {
     ),
     "a finding that is kept back": (
         "leaves out a finding",
-        receipts(lambda c: c.update(findings=["A trial flown again ended otherwise."])),
+        receipts(lambda c: c.update(findings=[{"kind": "unrecorded", "error": "no"}])),
     ),
     "an odd status": ("won", first("status", "won")),
     "no seed": ("outcomes.parquet", table(lambda table: table.drop_columns(["seed"]))),

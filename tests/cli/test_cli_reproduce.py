@@ -15,10 +15,10 @@ from faultpath_paper.verb import show
 from faultpath_quadrotor.plant import module
 
 import faultpath
-from faultpath.analyses.tables import MISSING
 from faultpath.api.display import Display
 from faultpath.api.job import Job
 from faultpath.core.errors import UserError
+from faultpath.report.tables import MISSING
 from faultpath.run.work.executor import Here
 
 PLAN = ReproductionPlan((table_4.PAGE,), QUICK)

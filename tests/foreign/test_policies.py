@@ -50,8 +50,8 @@ def test_the_guard_helps_only_where_the_policy_alone_is_faulted(example, tmp_pat
         "policy": ((12, 0),),
         "shared": ((0, 0),),
     }
-    assert not run.record.findings
-    assert run.record.headline in (ROOT / "docs" / "torch.md").read_text("utf-8")
+    assert not run.words.findings
+    assert run.headline in (ROOT / "docs" / "torch.md").read_text("utf-8")
 
 
 @pytest.mark.parametrize("variant", ["plain", "guarded"])

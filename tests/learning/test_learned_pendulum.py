@@ -30,7 +30,7 @@ run = faultpath.audit(
     progress=False,
 )
 print([condition.name for condition in run.record.conditions])
-print("failed" in run.table().column("status").to_pylist() or bool(run.record.findings))
+print("failed" in run.table().column("status").to_pylist() or bool(run.words.findings))
 print(sorted(name.rpartition("/")[2] for name in run.provenance.code.data))
 shipped = faultpath.load_system(example)
 print({len(shipped.modules(name, 0)) for name in shipped.variants})

@@ -25,7 +25,7 @@ from toy_runs import (
     won,
 )
 
-from faultpath.analyses.tables import MISSING, Table
+from faultpath.report.tables import MISSING, Table
 from faultpath.run import Trials
 
 NAMES = tuple(page.name for page in PAGES)

@@ -7,7 +7,7 @@ from faultpath_paper.results import Results
 from faultpath_quadrotor.training import trajectories
 from toy_runs import SCENES, Ends, calibrated, measured, page, run, tables, won
 
-from faultpath.analyses.tables.markdown import block
+from faultpath.report.tables.markdown import block
 from faultpath.system import Status
 
 

@@ -12,7 +12,7 @@ from faultpath_paper.pages import PAGES
 from faultpath_paper.results import Results
 from outcomes import trial
 
-from faultpath.analyses.tables import Entry, Table
+from faultpath.report.tables import Entry, Table
 from faultpath.run import Pairs, Trial, Trials
 from faultpath.system import Outcome, Status
 

@@ -148,7 +148,7 @@ def test_an_effect_passes_eight_classes_and_a_question_four(tmp_path: Path) -> N
     (value,) = (effect.value for effect in run.record.effects if effect.condition == "observer")
     rooms = ("stats", "analyses", "report", "api", "cli")
     effect = profiled(lambda part: value in numbers(part), tmp_path / "effect", *rooms, **asked)
-    assert {"Contrast", "Effect", "DecisionRecord"} <= {kind.__name__ for kind in effect.classes}
+    assert {"Contrast", "Effect", "AuditResult"} <= {kind.__name__ for kind in effect.classes}
     assert len(effect.classes) <= 8, effect.classes
 
     def question(holder: Any) -> bool:

@@ -11,7 +11,7 @@ import documents
 import pytest
 
 from faultpath.analyses.audit import AuditAnalysis, audit_analysis
-from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.model import AuditResult
 from faultpath.run import SystemSpec, load_system
 from faultpath.run.execution.runner import run_plan
 from faultpath.run.provenance import RunProvenance
@@ -25,13 +25,13 @@ RUNS = sorted(path.parent for path in REFERENCE.glob("*/record.json"))
 QUICK = ["toy", "dock"]
 
 
-def record_of(run: str) -> DecisionRecord:
-    return DecisionRecord.model_validate_json((REFERENCE / run / "record.json").read_bytes())
+def record_of(run: str) -> AuditResult:
+    return AuditResult.model_validate_json((REFERENCE / run / "record.json").read_bytes())
 
 
 def numbers(value: object) -> object:
     """Everything of a record that is no sentence, without the last digits of one processor."""
-    if isinstance(value, DecisionRecord):
+    if isinstance(value, AuditResult):
         return numbers(value.model_dump(exclude={"facts": {"system"}}))
     if isinstance(value, dict):
         return {key: numbers(part) for key, part in value.items() if key != "words"}
@@ -56,7 +56,7 @@ def test_the_code_that_is_here_gives_the_whole_of_a_quick_reference(name: str, t
     assert numbers(again) == numbers(record_of(name))
 
 
-def plan(record: DecisionRecord) -> AuditAnalysis:
+def plan(record: AuditResult) -> AuditAnalysis:
     question, facts = record.question, record.facts
     assert isinstance(question, AuditQuestion)
     place = facts.system if ".py:" not in facts.system else str(ROOT / facts.system)

@@ -7,7 +7,7 @@ from faultpath.faults import at_readers
 from faultpath.run import SystemSpec, Treatment, load_system
 from faultpath.run.attempt import Done, attempt
 from faultpath.run.check.blocks import BlockSpec, run_block
-from faultpath.run.execution.recheck import difference
+from faultpath.run.execution.recheck import deviation
 from faultpath.run.store.signals import TOGETHER
 
 SCENE = ("selection/003",)
@@ -25,7 +25,7 @@ def test_a_recorded_flight_is_the_flight_and_tells_why_errors_cancel() -> None:
         if faults:
             again = attempt(system, treatment, SCENE)
             assert isinstance(again, Done)
-            assert difference(again.outcomes, Done(run.outcomes, ())) == ""
+            assert deviation(again.outcomes, Done(run.outcomes, ())) is None
         told.append({each.name: each.values for each in run.signals[0]})
         trace = run.outcomes[0].trace
         assert trace is not None

@@ -10,7 +10,7 @@ from faultpath_paper.answers import (
     Sweep,
 )
 
-from faultpath.analyses.tables import Entry, Line, Table
+from faultpath.report.tables import Entry, Line, Table
 
 NASTY = '<script>alert("x")</script> & co'
 

@@ -7,8 +7,8 @@ import pytest
 from page_reader import unpack
 
 from faultpath.analyses.examples import captions, choose
+from faultpath.analyses.model import AuditResult
 from faultpath.analyses.pairs import Pair, read_pairs
-from faultpath.analyses.record import DecisionRecord
 from faultpath.report.inputs import ReportInput
 from faultpath.report.viewer import viewer_data
 from faultpath.system import Status
@@ -36,7 +36,7 @@ def scenes(source: ReportInput, *patterns: str, ends: Mapping[int, Status] = {})
     return [went(pair) for pair in pairs if pair.index < len(patterns)]
 
 
-def announcing(source: ReportInput, **signs: int) -> DecisionRecord:
+def announcing(source: ReportInput, **signs: int) -> AuditResult:
     """Return the record as if it announced these signs, and what follows from them."""
     record = source.record
     effects = tuple(
@@ -55,7 +55,7 @@ def announcing(source: ReportInput, **signs: int) -> DecisionRecord:
 
 
 def begun(
-    source: ReportInput, record: DecisionRecord, pairs: list[Pair], recorded: tuple[int, ...] = ()
+    source: ReportInput, record: AuditResult, pairs: list[Pair], recorded: tuple[int, ...] = ()
 ) -> list[int]:
     """Return the scenes that the viewer begins with, by their index; `recorded` are those of which
     signals were."""

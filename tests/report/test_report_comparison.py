@@ -12,10 +12,10 @@ from rich.console import Console
 
 from faultpath.analyses.facts import ComparisonFacts
 from faultpath.analyses.model import Condition
-from faultpath.analyses.tables.markdown import grid
 from faultpath.report.compared import Compared, differing, titles, together
 from faultpath.report.comparison import effects, headline, page, sentences, shown
 from faultpath.report.inputs import ReportInput
+from faultpath.report.tables.markdown import grid
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser

@@ -4,9 +4,8 @@ import re
 from typing import Literal
 from xml.etree import ElementTree
 
-from faultpath.analyses.model import Ahead, ConditionBreakEven
+from faultpath.analyses.model import Ahead, AuditResult, ConditionBreakEven
 from faultpath.analyses.pairs import read_pairs
-from faultpath.analyses.record import DecisionRecord
 from faultpath.report.effects import (
     effect_axis,
     effect_rows,
@@ -45,7 +44,7 @@ def test_all_figures_are_xml(one_seed: ReportInput) -> None:
         ElementTree.fromstring(picture)
 
 
-def _forest(record: DecisionRecord, **changes: object) -> str:
+def _forest(record: AuditResult, **changes: object) -> str:
     effect = record.effects[0].model_copy(update=changes)
     rows = [("Correct inputs", "", effect)]
     return panel("All", rows, shared_axis([rows]))
@@ -60,7 +59,7 @@ def test_only_what_is_decided_is_bold_and_filled(one_seed: ReportInput) -> None:
 
 
 def _panel(
-    record: DecisionRecord,
+    record: AuditResult,
     signs: tuple[Literal[-1, 1], ...],
     pieces: tuple[tuple[float, float], ...],
     *regions: Region,

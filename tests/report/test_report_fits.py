@@ -8,9 +8,9 @@ from outcomes import outcome
 from playwright.sync_api import Browser, Page
 
 from faultpath import compare, open_run
-from faultpath.analyses.map.record import MapRecord
+from faultpath.analyses.map.model import MapResult
 from faultpath.analyses.pairs import Pair
-from faultpath.analyses.scan.record import ScanRecord
+from faultpath.analyses.scan.model import ScanResult
 from faultpath.report.frame import STYLES
 from faultpath.report.map_pictures import correlation_picture, map_picture
 from faultpath.report.pair_grid import pair_grid
@@ -124,7 +124,7 @@ def test_every_picture_of_a_page_holds_its_parts_at_all_widths(
 
 @pytest.mark.parametrize("run", ["scan-toy", "scan-wpilib"])
 def test_the_marks_and_words_of_a_scan_keep_apart(browser: Browser, run: str) -> None:
-    record = ScanRecord.model_validate_json((REFERENCE / run / "scan.json").read_bytes())
+    record = ScanResult.model_validate_json((REFERENCE / run / "scan.json").read_bytes())
     (version,) = record.versions
     strips = [strip(record, version, pair).render() for pair in version.listed]
     page = shown(browser, pictures(triangle(record, version).render(), *strips))
@@ -135,7 +135,7 @@ def test_the_marks_and_words_of_a_scan_keep_apart(browser: Browser, run: str) ->
 
 @pytest.mark.parametrize("run", ["map-toy", "map-camera", "map-quadrotor"])
 def test_the_marks_and_words_of_a_map_keep_apart(browser: Browser, run: str) -> None:
-    record = MapRecord.model_validate_json((REFERENCE / run / "map.json").read_bytes())
+    record = MapResult.model_validate_json((REFERENCE / run / "map.json").read_bytes())
     drawn = map_picture(record).render(), correlation_picture(record).render()
     page = shown(browser, pictures(*drawn))
     assert page.locator(".legend > *").count() == 8

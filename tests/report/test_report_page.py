@@ -11,10 +11,11 @@ from page_reader import Page, unpack
 import faultpath.analyses.pairs as page_pairs
 from faultpath.analyses.examples import captions
 from faultpath.analyses.pairs import PairKind, read_pairs
-from faultpath.analyses.sentences import phrases
-from faultpath.analyses.sentences.wording import capital
+from faultpath.core.text import capital
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
+from faultpath.report.sentences import phrases
+from faultpath.report.sentences.words import words
 from faultpath.stats.estimate import DEGREES, EM
 
 
@@ -38,8 +39,8 @@ def test_verdict_comes_first_and_headings_do_not_skip(source: ReportInput, page:
     assert levels[0] == 1
     assert levels.count(1) == 1
     assert all(b - a <= 1 for a, b in pairwise(levels))
-    assert source.record.headline in page.text
-    assert page.text.index(source.record.headline) < page.text.index("in the same scenes")
+    assert words(source.record).headline in page.text
+    assert page.text.index(words(source.record).headline) < page.text.index("in the same scenes")
     assert [tag for tag, _ in page.tags].count("script") == 2
 
 

@@ -10,8 +10,8 @@ from page_reader import Page
 from reproduction_toys import NASTY, ledger, reproduction, sweep, tables
 from rich.console import Console
 
-from faultpath.analyses.tables import Entry, Line, Table
 from faultpath.report.inputs import ReportInput
+from faultpath.report.tables import Entry, Line, Table
 
 CENTRAL = Table(
     columns=("Isolated", "Shared"),

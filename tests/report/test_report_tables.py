@@ -6,10 +6,10 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.model import AuditResult
+from faultpath.report.audit_tables import by_condition, decided_for, markdown_table
 from faultpath.report.html import _finding, write_report
 from faultpath.report.inputs import ReportInput
-from faultpath.report.tables import by_condition, decided_for, markdown_table
 from faultpath.report.terminal import decision
 
 
@@ -42,7 +42,7 @@ RECORDS = sorted((Path(__file__).parents[2] / "docs" / "reference").glob("*/reco
 @pytest.mark.parametrize("path", RECORDS, ids=lambda path: path.parent.name)
 def test_a_narrow_terminal_cuts_no_number(path: Path) -> None:
     console = Console(width=80)
-    record = DecisionRecord.model_validate_json(path.read_bytes())
+    record = AuditResult.model_validate_json(path.read_bytes())
     with console.capture() as captured:
         console.print(decision(record))
     text = captured.get()
@@ -52,7 +52,7 @@ def test_a_narrow_terminal_cuts_no_number(path: Path) -> None:
 
 @pytest.mark.parametrize("path", RECORDS, ids=lambda path: path.parent.name)
 def test_the_two_numbers_below_the_headline_are_both_decided(path: Path) -> None:
-    record = DecisionRecord.model_validate_json(path.read_bytes())
+    record = AuditResult.model_validate_json(path.read_bytes())
     found = [effect for effect, _ in _finding(record)]
     assert bool(found) == any(change.turn == "reversal" for change in record.changes)
     assert all(effect.significant for effect in found)

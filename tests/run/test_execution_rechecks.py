@@ -1,7 +1,6 @@
 """A little is flown twice: what does not repeat, depends on its block or writes is named."""
 
 import itertools
-import json
 import re
 import time
 from dataclasses import replace
@@ -13,6 +12,8 @@ from toy_system import CONSUMERS, STEPS, ToySystem
 
 from faultpath.core.errors import Stopped
 from faultpath.loop import Reading
+from faultpath.report.sentences.findings import said
+from faultpath.run import Deliveries
 from faultpath.run.execution.recheck import SAMPLE, Rechecks
 from faultpath.run.execution.runner import run_plan
 
@@ -78,7 +79,7 @@ def _plan(kind: str, count: int = 1, **options: str):
 
 
 @pytest.mark.parametrize(
-    ("kind", "said"),
+    ("kind", "words"),
     [
         ("drifts", r"Results do not repeat: .* of 'plain' under correct inputs, seed 0"),
         ("crowded", r"Results do not repeat: .* of 'plain' .*time_s by up"),
@@ -87,16 +88,16 @@ def _plan(kind: str, count: int = 1, **options: str):
         ("hashless", r"All 10 scenes carry the same hashes of initial state"),
     ],
 )
-def test_an_oddity_is_named_and_kept(tmp_path, kind, said):
+def test_an_oddity_is_named_and_kept(tmp_path, kind, words):
     trials = _plan(kind)
     result = run_plan(trials, tmp_path, workers=int(kind == "writes"))
-    found = [finding for finding in result.findings if re.search(said, finding)]
+    found = [finding for finding in result.findings if re.search(words, said(finding))]
     assert found, result.findings
     again = run_plan(trials, tmp_path, workers=0)
     assert again.blocks_computed == 0
     assert again.findings == result.findings
-    held = json.loads((tmp_path / "deliveries.json").read_text())
-    assert found[0] in held["findings"]
+    held = Deliveries.model_validate_json((tmp_path / "deliveries.json").read_bytes())
+    assert found[0] in held.findings
 
 
 @pytest.mark.parametrize(
@@ -106,7 +107,7 @@ def test_an_oddity_is_named_and_kept(tmp_path, kind, said):
 def test_what_does_not_repeat_is_seen_whatever_the_reason(tmp_path, kind, block):
     findings = run_plan(_plan(kind, count=12, block=block), tmp_path, workers=0).findings
     assert findings
-    assert all(said.startswith("Results do not repeat: ") for said in findings)
+    assert all(said(finding).startswith("Results do not repeat: ") for finding in findings)
 
 
 @pytest.mark.parametrize("kind", ["", "crowded"])
@@ -143,7 +144,7 @@ def test_a_few_scenes_of_a_later_treatment_are_flown_at_other_places_than_before
     few = next(each for each in result.rechecks if each.why == "sample")
     (one,) = (each for each in result.rechecks if each is not few)
     assert (one.why, len(one.scenes), one.unit != few.unit) == ("guarded", 1, True)
-    assert (len(few.scenes), few.unit_scenes, few.differs) == (SAMPLE, 10, "")
+    assert (len(few.scenes), few.unit_scenes, few.deviation) == (SAMPLE, 10, None)
     assert all(SCENES.index(scene) > i for i, scene in enumerate(few.scenes))
     first = plan().rows[0].treatment
     assert (few.variant, few.faults, few.seed) != (first.variant, "correct inputs", first.seed)
@@ -176,7 +177,9 @@ def test_a_reader_that_never_reads_is_named(tmp_path):
     )
     asked = plan().model_copy(update={"rows": (row, deaf)})
     (finding,) = run_plan(asked, tmp_path, workers=0).findings
-    assert finding.startswith("Variant 'deaf' declares that observer.balance reads 'mass', but it")
+    assert said(finding).startswith(
+        "Variant 'deaf' declares that observer.balance reads 'mass', but it"
+    )
 
 
 def test_failed_trials_are_not_drawn(tmp_path):

@@ -69,17 +69,17 @@ def test_other_conditions_void_the_pair_and_name_both_hashes(name, what):
     table = _altering("repair", "b", 5, **{name: "other"})
     pairs = pair(table, ONE, TWO)
     assert (pairs.void.sum(), whole(pairs)) == (1, ["a", "c"])
-    (mismatch,) = pairs.mismatches
-    assert f"in scene 'b' (seed 5): their {what} differ ({name} 'other' and " in str(mismatch)
-    assert repr(getattr(outcome("b", seed=5), name)) in str(mismatch)
+    (unpaired,) = pairs.unpaired
+    assert f"in scene 'b' (seed 5): their {what} differ ({name} 'other' and " in str(unpaired)
+    assert repr(getattr(outcome("b", seed=5), name)) in str(unpaired)
     np.testing.assert_array_equal(pairs.whole().success[1], [[0, 0], [0, 1]])
 
 
 def test_planners_that_draw_differently_are_pairs_all_the_same():
     table = _altering("repair", "b", 5, planner_noise_hash="other")
-    assert pair(table, ONE, TWO, other_noise=True).mismatches == ()
+    assert pair(table, ONE, TWO, other_noise=True).unpaired == ()
     table = _altering("repair", "b", 5, initial_hash="other")
-    assert len(pair(table, ONE, TWO, other_noise=True).mismatches) == 1
+    assert len(pair(table, ONE, TWO, other_noise=True).unpaired) == 1
 
 
 def test_a_failed_trial_voids_its_pair_and_leaves_its_scene_out():

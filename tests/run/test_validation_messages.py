@@ -7,7 +7,7 @@ from typing import Literal
 import pytest
 from pydantic import PositiveFloat, TypeAdapter, ValidationError
 
-from faultpath.analyses.map.record import MapRecord
+from faultpath.analyses.map.model import MapResult
 from faultpath.core.error_source import described
 from faultpath.core.results import Frozen
 from faultpath.core.validation_messages import Misfit, misfit_of
@@ -46,7 +46,7 @@ PYDANTIC = re.compile(
 )
 
 
-@pytest.mark.parametrize("model", [Deliveries, MapRecord])
+@pytest.mark.parametrize("model", [Deliveries, MapResult])
 @pytest.mark.parametrize("number", [0, 9])
 def test_a_format_that_no_version_wrote_is_refused(model: type, number: int) -> None:
     with pytest.raises(ValidationError) as caught:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from faultpath.analyses.decide import decide
 from faultpath.analyses.judging import pair_results
-from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.model import AuditResult
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
 from faultpath.run.received.question import JudgeQuestion
@@ -43,7 +43,7 @@ _NOT_ASKED = BreakEven(
 
 def judged(
     success: Bools, blank: Bools, cluster: str = "scene", shares: bool = True
-) -> DecisionRecord:
+) -> AuditResult:
     """Return the record of `success` [variants, conditions, scenes, seeds] without what is `blank`.
 
     Break-even sets are left out unless `shares` asks for them.
@@ -94,7 +94,7 @@ def drawn(
     return success, blank
 
 
-def wrong(record: DecisionRecord, shifts: tuple[float, ...]) -> bool:
+def wrong(record: AuditResult, shifts: tuple[float, ...]) -> bool:
     """Return whether any break-even set puts a variant ahead where the other one is."""
     ends = dict(zip(("correct", "observer", "shared"), shifts, strict=True))
     sets = [(each, "correct", each.condition) for each in record.break_even]

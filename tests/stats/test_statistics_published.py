@@ -7,7 +7,7 @@ import pytest
 import yaml
 from faultpath_paper.quantities.summaries import spearman
 
-from faultpath.analyses.sentences import wording
+from faultpath.report.sentences import wording
 from faultpath.stats.breakeven import break_even
 from faultpath.stats.contrast import change, percentile_interval
 from faultpath.stats.decisions import with_test

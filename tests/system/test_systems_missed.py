@@ -44,8 +44,8 @@ def audit(system: ComposedSystem, fault: str, folder: Path) -> faultpath.Run:
 
 def test_a_fault_that_changes_no_reading_never_acted(system, tmp_path) -> None:
     run = audit(system, "pole:scale=1", tmp_path / "run")
-    assert run.record.headline == "The fault never changed a reading: no effect of it was tested."
-    assert run.record.headline in PAGE
+    assert run.headline == "The fault never changed a reading: no effect of it was tested."
+    assert run.headline in PAGE
 
 
 def test_an_input_that_is_not_used_is_remarked(system) -> None:

@@ -5,8 +5,8 @@ from typing import Literal
 
 from pydantic import ConfigDict
 
-from faultpath.analyses.tables import Table
 from faultpath.core.results import Shown
+from faultpath.report.tables import Table
 
 Answer = Literal["confirmed", "refuted", "undecided"]
 Size = Literal["compatible", "right sign, other size", "other size", "other sign", "not comparable"]

@@ -10,9 +10,9 @@ from pathlib import Path
 
 from pydantic import TypeAdapter
 
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.tables import MISSING, Entry, Table, line
 from faultpath.core.results import Frozen
+from faultpath.report.sentences import wording
+from faultpath.report.tables import MISSING, Entry, Table, line
 from faultpath.stats.estimate import Sign
 from faultpath_paper.answers import Reproduction
 from faultpath_paper.entries import bracket

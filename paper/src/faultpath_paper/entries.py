@@ -5,8 +5,8 @@ from dataclasses import astuple, dataclass
 
 import numpy as np
 
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.tables import MISSING, Entry
+from faultpath.report.sentences import wording
+from faultpath.report.tables import MISSING, Entry
 from faultpath.stats.contrast import Contrast
 from faultpath.system import Status
 from faultpath_paper.cells import Cell, of_seed

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from itertools import compress
 from typing import TypeAlias
 
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.tables import Line, Table
+from faultpath.core.text import counted
+from faultpath.report.sentences import wording
+from faultpath.report.tables import Line, Table
 from faultpath_paper.answers import Sweep
 from faultpath_paper.cells import Cell, data
 from faultpath_paper.entries import EntryGroup, Figure, PublishedContrast, difference, success
@@ -28,7 +29,7 @@ def flown(results: Results, cells: Iterable[Cell]) -> str:
     if not libraries:
         return "No trial of this table was run."
     parts = (
-        f"{wording.counted(len(scenes), 'scene')} of the {library} library, "
+        f"{counted(len(scenes), 'scene')} of the {library} library, "
         f"{wording.seeds(tuple(sorted(seeds)))}"
         for library, (scenes, seeds) in libraries.items()
     )
@@ -45,7 +46,7 @@ def recorded(results: Results, measurements: Iterable[Measurement]) -> str:
         return "No error of this table was measured."
     measurement, windows = next(iter(measured.items()))
     library = measurement.recording.library
-    scenes = wording.counted(len(set(windows.scenes)), "scene")
+    scenes = counted(len(set(windows.scenes)), "scene")
     seeds = wording.seeds(tuple(sorted({measurement.seed for measurement in measured})))
     return f"{len(windows):,} windows of {scenes} of the {library} library, {seeds}."
 

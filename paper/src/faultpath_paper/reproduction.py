@@ -6,7 +6,6 @@ from os import PathLike
 from pathlib import Path
 from typing import NoReturn
 
-from faultpath.analyses.tables import markdown
 from faultpath.api.display import Display, display
 from faultpath.api.folders import read_provenance
 from faultpath.api.job import Job
@@ -14,6 +13,7 @@ from faultpath.api.runs import FinishedRun
 from faultpath.api.systems import LOCAL, check_executor, executor_of
 from faultpath.core.errors import Stopped, UserError
 from faultpath.core.files.atomic import write_text
+from faultpath.report.tables import markdown
 from faultpath.run.provenance import RunProvenance
 from faultpath.run.store.folder import AGAIN, DELIVERIES, unseal
 from faultpath.run.work.executor import Progress

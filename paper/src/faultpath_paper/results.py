@@ -71,8 +71,8 @@ class Results:
         """
         seeds = self.common_seeds(first, second)
         pairs = pair(self.trials, first.group, second.group, seeds, other_noise=other_noise)
-        if pairs.mismatches:
-            raise PairingRefused(str(pairs.mismatches[0]))
+        if pairs.unpaired:
+            raise PairingRefused(str(pairs.unpaired[0]))
         pairs = pairs.whole()
         if scenes is not None:
             pairs = pairs.only({scene.id for scene in pairs.scenes if scene.index in scenes})

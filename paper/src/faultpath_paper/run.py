@@ -5,11 +5,11 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
-from faultpath.analyses.tables import Table
 from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import write_text
 from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.plain import Misread, model_of
+from faultpath.report.tables import Table
 from faultpath.run import Deliveries, SystemSpec, Trials, load_system
 from faultpath.run.code import system_code
 from faultpath.run.execution.runner import RunResult

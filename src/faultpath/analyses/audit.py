@@ -7,7 +7,7 @@ from pathlib import PurePath
 from faultpath.analyses.analysis import Analysis, Round, Rounds
 from faultpath.analyses.decide import decide, primary_condition
 from faultpath.analyses.facts import ComparisonFacts, SceneOrder, facts_of, question_of
-from faultpath.analyses.model import CORRECT, SHARED, Condition, FaultedTap
+from faultpath.analyses.model import CORRECT, SHARED, AuditResult, Condition, FaultedTap
 from faultpath.analyses.planning import (
     ORDER_SEED,
     faults_by_condition,
@@ -15,11 +15,9 @@ from faultpath.analyses.planning import (
     scenes_of,
     two_variants,
 )
-from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences.wording import counted
 from faultpath.analyses.stopping import stops
 from faultpath.core.errors import UserError
-from faultpath.core.text import unknown
+from faultpath.core.text import counted, unknown
 from faultpath.faults import Fault
 from faultpath.loop import TapCount
 from faultpath.run import Deliveries, Plan, SystemSpec, Trials
@@ -45,9 +43,7 @@ class AuditAnalysis(Analysis[None]):
         """Yield the only round."""
         yield Round(self.plan, stop=self.stops)
 
-    def conclude(
-        self, trials: Trials, deliveries: Deliveries, items: None = None
-    ) -> DecisionRecord:
+    def conclude(self, trials: Trials, deliveries: Deliveries, items: None = None) -> AuditResult:
         """Return the decision record of a run; raises as `faultpath.analyses.decide`."""
         question = self.question
         conditions = [

@@ -7,7 +7,8 @@ from typing import TypeAlias
 import numpy as np
 
 from faultpath.core.errors import UserError
-from faultpath.run.pairing import Group, Mismatch, Pairs, pair
+from faultpath.run.findings import Unpaired
+from faultpath.run.pairing import Group, Pairs, pair
 from faultpath.run.trials import Bools, Trials
 from faultpath.stats.inputs import Floats
 
@@ -26,7 +27,8 @@ class PairedTrials:
     """Under each of these, in every scene, by the seeds that count."""
     void: tuple[str, ...]
     """Conditions of which no pair has."""
-    mismatches: tuple[Mismatch, ...]
+    unpaired: tuple[Unpaired, ...]
+    """Pairs that met different conditions."""
 
 
 def compared(repair: str, baseline: str, conditions: Iterable[str], trials: Trials) -> PairedTrials:
@@ -39,7 +41,7 @@ def compared(repair: str, baseline: str, conditions: Iterable[str], trials: Tria
         condition: pair(trials, Group(repair, condition), Group(baseline, condition))
         for condition in conditions
     }
-    mismatches = tuple(mismatch for paired in pairs.values() for mismatch in paired.mismatches)
+    unpaired = tuple(found for paired in pairs.values() for found in paired.unpaired)
     success = {condition: paired.success for condition, paired in pairs.items()}
     left = [condition for condition, pair in success.items() if paired_scenes(*pair).any()]
     if not left:
@@ -57,7 +59,7 @@ def compared(repair: str, baseline: str, conditions: Iterable[str], trials: Tria
             for condition in left
         },
         void=tuple(condition for condition in pairs if condition not in left),
-        mismatches=mismatches,
+        unpaired=unpaired,
     )
 
 

@@ -15,18 +15,17 @@ from faultpath.analyses.model import (
     AS_RUN,
     CORRECT,
     SHARED,
+    AuditResult,
     Condition,
     ConditionBreakEven,
     Invalid,
     Share,
     Testing,
 )
-from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences import phrases
 from faultpath.analyses.shares import between
 from faultpath.analyses.stopping import stopped
 from faultpath.core.errors import UserError
-from faultpath.run.pairing import mismatch_words
+from faultpath.run.findings import Finding, Unpaired
 from faultpath.run.trials import Trials
 from faultpath.stats.contrast import Contrast
 from faultpath.stats.power import detectable
@@ -38,15 +37,15 @@ def decide(
     facts: ComparisonFacts,
     conditions: Sequence[Condition],
     trials: Trials,
-    findings: Sequence[str] = (),
+    findings: Sequence[Finding] = (),
     repeats: bool = True,
-) -> DecisionRecord:
+) -> AuditResult:
     """Return the decision record of an audit.
 
     Each effect rests on the scenes that have its trials, each change on those that both have; a
-    condition that has none is left out, and named. The record carries `findings`, and what was
-    found about its pairs. Where trials do not `repeats`, or a pair met different conditions,
-    nothing is significant. `UserError` when no pair is left under any condition, for a primary
+    condition that has none is left out. The result carries `findings`, and pairs that met different
+    conditions. Where there are such, or trials do not `repeats`, nothing is significant.
+    `UserError` when no pair is left under any condition, for a primary
     condition that the audit does not have, and where newly trained models are asked for and too few
     trainings differ.
     """
@@ -56,7 +55,7 @@ def decide(
     # Whether a fault acted is told by receipts, and other tools' results have none.
     untested = () if facts.judged else untested_conditions(conditions, counts)
     comparison, family = family_of(question, facts, conditions, trials, untested)
-    invalid: Invalid | None = "unpaired" if comparison.mismatches else None
+    invalid: Invalid | None = "unpaired" if comparison.unpaired else None
     if not repeats:
         invalid = "unrepeatable"
     if invalid:
@@ -77,7 +76,7 @@ def decide(
     from_one = [(condition, SHARED) for condition in family.changes]
     state = stopped(question, facts, family, trials)
     first = next(iter(family.effects.values()))
-    record = DecisionRecord(
+    return AuditResult(
         question=question,
         facts=facts,
         conditions=tuple(conditions),
@@ -97,18 +96,9 @@ def decide(
             intervals=first.estimate().method,
         ),
         stopped=state and state.model_copy(update={"small": ()} if invalid else {}),
+        # A result that is decided anew has the first already.
+        findings=tuple(dict.fromkeys((*Unpaired.of(comparison.unpaired), *findings))),
     )
-    noted = (
-        *(
-            f"{phrases.no_pair(condition)}: the table shows what failed."
-            for condition in comparison.void
-        ),
-        *phrases.failed_trials(record),
-        *phrases.partly_measured(record),
-        *mismatch_words(comparison.mismatches),
-        *findings,  # a record that is decided anew has some of the above already
-    )
-    return record.model_copy(update={"findings": tuple(dict.fromkeys(noted))})
 
 
 def primary_condition(named: str, conditions: Sequence[Condition]) -> str:

@@ -15,9 +15,8 @@ from collections.abc import Collection, Mapping, Sequence
 from statistics import median_low
 from typing import TypeAlias
 
-from faultpath.analyses.model import SHARED
+from faultpath.analyses.model import SHARED, AuditResult
 from faultpath.analyses.pairs import Pair, PairKind, by_scene
-from faultpath.analyses.record import DecisionRecord
 
 At: TypeAlias = tuple[str, int]
 """A scene and a seed."""
@@ -28,7 +27,7 @@ _MOST = 6
 
 
 def choose(
-    record: DecisionRecord, pairs: Sequence[Pair], recorded: Collection[At] = ()
+    record: AuditResult, pairs: Sequence[Pair], recorded: Collection[At] = ()
 ) -> tuple[At, ...]:
     """Return up to six scenes with their seeds by the rule at the top.
 

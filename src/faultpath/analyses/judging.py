@@ -3,18 +3,18 @@
 import hashlib
 import json
 import re
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from faultpath.analyses.decide import primary_condition
 from faultpath.analyses.facts import ComparisonFacts
 from faultpath.analyses.judging_table import Address, Key, table_of, units_of
-from faultpath.analyses.model import AS_RUN, CORRECT, SHARED, Condition
-from faultpath.analyses.sentences.wording import capital, counted, where
+from faultpath.analyses.model import AS_RUN, CORRECT, SHARED, Condition, where
 from faultpath.core.errors import UserError
-from faultpath.core.text import listed, unknown
+from faultpath.core.text import capital, listed, unknown
 from faultpath.run import Trials
 from faultpath.run.deliveries import unproven
+from faultpath.run.findings import ExtraTrials, Finding, MissingTrials, NoneFailed, SeveralTasks
 from faultpath.run.received.question import JudgeQuestion
 from faultpath.run.received.trial import NO_OUTCOME, Received
 from faultpath.run.store.tables import FIXED
@@ -33,7 +33,7 @@ class PairedResults:
     facts: ComparisonFacts
     conditions: tuple[Condition, ...]
     trials: Trials
-    findings: tuple[str, ...]
+    findings: tuple[Finding, ...]
 
 
 def pair_results(rows: Sequence[Received], request: JudgeQuestion) -> PairedResults:
@@ -59,7 +59,6 @@ def pair_results(rows: Sequence[Received], request: JudgeQuestion) -> PairedResu
 
     units = units_of(received, request)
     hashed = _hashed(rows)
-    tasks = {address[2][0]: row.task for address, row in received.items()}
     trials, missing = table_of(received, ordered, units, request, hashed)
     keys = {unit: sorted(members) for unit, members in units.labels.items()}
     conditions = tuple(_condition(name) for name in ordered)
@@ -78,7 +77,8 @@ def pair_results(rows: Sequence[Received], request: JudgeQuestion) -> PairedResu
         unit=request.cluster,
     )
     longer = [unit for unit, members in units.labels.items() if len(members) > len(units.seeds)]
-    findings = _findings(trials, missing, longer, tasks, request, hashed)
+    tasks = len({row.task for row in rows})
+    findings = _findings(trials, missing, longer, tasks, hashed, request)
     return PairedResults(
         request.model_copy(update={"folder": None}), facts, conditions, trials, tuple(findings)
     )
@@ -200,34 +200,26 @@ def _findings(
     trials: Trials,
     missing: Mapping[tuple[str, str], Sequence[Key]],
     longer: Sequence[str],
-    tasks: Mapping[str, str],
-    question: JudgeQuestion,
+    tasks: int,
     hashed: bool,
-) -> Iterable[str]:
+    question: JudgeQuestion,
+) -> Iterator[Finding]:
     for (variant, condition), keys in missing.items():
-        unit, label = keys[0]
-        which = "" if not label else f" ({'' if question.cluster == 'task' else 'seed '}{label})"
-        yield (
-            f"{capital(where(condition))}, {counted(len(keys), 'trial')} of {variant} "
-            f"{'is' if len(keys) == 1 else 'are'} missing, for example that in {unit}{which}: "
-            "each voids its pair."
+        first, trial = keys[0]
+        yield MissingTrials(
+            variant=variant,
+            condition=condition,
+            trials=len(keys),
+            unit=question.cluster,
+            first=first,
+            trial=trial,
         )
     if longer:
-        yield (
-            f"{counted(len(longer), question.cluster)} {'has' if len(longer) == 1 else 'have'} "
-            f"more trials than the others, for example {longer[0]}: the extra trials are left out."
-        )
-    several = len(set(tasks.values()))
-    if question.cluster == "scene" and several > 1:
-        yield (
-            f"The scenes come from {several} tasks and are taken as independent: what is "
-            "significant need not hold for new tasks. --cluster task tests whether it does."
-        )
+        yield ExtraTrials(units=len(longer), unit=question.cluster, first=longer[0])
+    if question.cluster == "scene" and tasks > 1:
+        yield SeveralTasks(tasks=tasks)
     if hashed:
         yield from unproven(trials.met())
     succeeded = trials.has(Status.SUCCESS)
     if NO_OUTCOME in trials.errors.values() and (succeeded | trials.failed).all():
-        yield (
-            "No trial ended without success, and some say nothing: where `failed` or an empty cell "
-            "means no success, write 0."
-        )
+        yield NoneFailed()

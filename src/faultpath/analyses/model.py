@@ -5,6 +5,7 @@ from typing import Literal
 from faultpath.analyses.effects import Change, Effect, Secondary
 from faultpath.analyses.facts import ComparisonFacts, EarlierAnalysis, Question
 from faultpath.core.results import Result
+from faultpath.run.findings import Finding
 from faultpath.stats.estimate import BreakEven
 
 CORRECT = "correct"
@@ -13,6 +14,19 @@ AS_RUN = "as-run"
 """The only condition of results that name no condition; no module can be called so."""
 Invalid = Literal["unrepeatable", "unpaired"]
 """Trials that came out otherwise when they ran again; pairs that met different conditions."""
+
+
+def where(condition: str) -> str:
+    """Return a condition as part of a sentence."""
+    if condition == CORRECT:
+        return "under correct inputs"
+    if condition == AS_RUN:
+        return "in these results"
+    return (
+        "under the shared fault"
+        if condition == SHARED
+        else f"with the fault at the {condition} alone"
+    )
 
 
 class FaultedTap(Result):
@@ -132,8 +146,8 @@ class AuditResult(Result):
     invalid: Invalid | None = None
     """Why no result follows from these trials: then nothing is significant."""
     testing: Testing
-    findings: tuple[str, ...] = ()
-    """Remarks on the run that a reader has to know, a sentence each."""
+    findings: tuple[Finding, ...] = ()
+    """What was found in its trials, beside what follows from the fields above."""
     stopped: StoppedAudit | None = None
     """State at which a sequential audit ended."""
     earlier: tuple[EarlierAnalysis, ...] = ()

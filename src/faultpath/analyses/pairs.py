@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.model import AuditResult
 from faultpath.run import Group, Trials, pair
 from faultpath.run.pairing import unlike
 from faultpath.system.outcome import Outcome, Status
@@ -82,7 +82,7 @@ class Pair:
         return {PairKind.REPAIR_ONLY: 1, PairKind.BASELINE_ONLY: -1}.get(self.kind, 0)
 
 
-def read_pairs(trials: Trials, record: DecisionRecord) -> tuple[Pair, ...]:
+def read_pairs(trials: Trials, record: AuditResult) -> tuple[Pair, ...]:
     """Return the pairs that a page shows, ordered by condition, topology, scene index and seed.
 
     These are all pairs of the record's versions, or those of `MOST_SCENES` scenes that lie evenly
@@ -115,7 +115,7 @@ def is_sample(trials: Trials) -> bool:
     return len(trials.scenes) > MOST_SCENES
 
 
-def counts(trials: Trials, record: DecisionRecord, condition: str) -> dict[PairKind, int]:
+def counts(trials: Trials, record: AuditResult, condition: str) -> dict[PairKind, int]:
     """Return how many of all pairs under a condition ended in each way."""
     question = record.question
     baseline, repair = (Group(name, condition) for name in (question.baseline, question.repair))

@@ -1,12 +1,16 @@
 """At which shares, of faulty episodes or of common causes, a version is ahead."""
 
+import math
+
 from faultpath.analyses.compared import PairedTrials
 from faultpath.analyses.effects import Effect
 from faultpath.analyses.family import TestedContrasts
 from faultpath.analyses.model import Ahead, ConditionBreakEven, Share
-from faultpath.analyses.sentences.wording import first, last
 from faultpath.stats.breakeven import break_even, mixture_curve, only
 from faultpath.stats.estimate import Region
+
+_SLACK = 1e-6
+"""On a percentage that is a whole number but for rounding."""
 
 
 def between(
@@ -71,3 +75,13 @@ def _ahead(regions: tuple[Region, ...], none: Effect, every: Effect) -> tuple[Ah
         elif low and last(region.high) > 0:
             results.append(Ahead(sign=sign, where="up to", percent=last(region.high)))
     return tuple(results)
+
+
+def first(frequency: float) -> int:
+    """Return the first whole percentage at or above a frequency."""
+    return math.ceil(100.0 * frequency - _SLACK)
+
+
+def last(frequency: float) -> int:
+    """Return the last whole percentage at or below a frequency."""
+    return math.floor(100.0 * frequency + _SLACK)

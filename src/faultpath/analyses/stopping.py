@@ -5,9 +5,7 @@ from collections.abc import Iterable, Sequence
 from faultpath.analyses.descriptive import counts_of, untested_conditions
 from faultpath.analyses.facts import ComparisonFacts, EarlierAnalysis, Question
 from faultpath.analyses.family import TestedContrasts, family_of
-from faultpath.analyses.model import Condition, StoppedAudit
-from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences import phrases
+from faultpath.analyses.model import AuditResult, Condition, StoppedAudit
 from faultpath.core.errors import UserError
 from faultpath.run.trials import Trials
 
@@ -56,9 +54,7 @@ def stopped(
     return StoppedAudit(scenes=scenes, reached=required <= significant_or_small, small=tuple(small))
 
 
-def with_earlier_analyses(
-    record: DecisionRecord, earlier: Iterable[DecisionRecord]
-) -> DecisionRecord:
+def with_earlier_analyses(record: AuditResult, earlier: Iterable[AuditResult]) -> AuditResult:
     """Return a record that tells of other conclusions from its trials, and what they cost.
 
     `earlier` are records of the same variants by the same code, with those that they tell of. The
@@ -66,7 +62,7 @@ def with_earlier_analyses(
     anything. A sequential audit allows for all analyses with the same primary contrast.
     """
 
-    def analysis(record: DecisionRecord) -> EarlierAnalysis:
+    def analysis(record: AuditResult) -> EarlierAnalysis:
         question, facts = record.question, record.facts
         return EarlierAnalysis(
             scenes=None if facts.order else facts.n_scenes,
@@ -78,8 +74,4 @@ def with_earlier_analyses(
     for other in earlier:
         known += other.earlier if other.few else (*other.earlier, analysis(other))
     others = tuple(one for one in dict.fromkeys(known) if one != analysis(record))
-    if not others:
-        return record
-    record = record.model_copy(update={"earlier": others})
-    remark = phrases.earlier_analyses(record)
-    return record.model_copy(update={"findings": (*record.findings, remark)})
+    return record.model_copy(update={"earlier": others})

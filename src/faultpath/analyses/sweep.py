@@ -3,12 +3,12 @@
 from collections.abc import Collection, Sequence
 
 from faultpath.analyses.contrasts import alpha_shares, change_name, effect_name
-from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.model import AuditResult
 from faultpath.stats.decisions import holm
 from faultpath.stats.estimate import ALPHA, Sign
 
 
-def contrasts(record: DecisionRecord) -> dict[str, tuple[float, float]]:
+def contrasts(record: AuditResult) -> dict[str, tuple[float, float]]:
     """Return p and weight of every contrast that a record tested, by its name."""
     tested = [effect for effect in record.effects if effect.corrected_p is not None]
     p_values = {effect_name(effect.condition): effect.p_value for effect in tested}
@@ -18,7 +18,7 @@ def contrasts(record: DecisionRecord) -> dict[str, tuple[float, float]]:
 
 
 def decide_sizes(
-    records: Sequence[DecisionRecord], once: Collection[str] = ()
+    records: Sequence[AuditResult], once: Collection[str] = ()
 ) -> list[dict[str, tuple[Sign, float]]]:
     """Return for each size, by condition, the side that is decided over all sizes, and the adjusted
     p.

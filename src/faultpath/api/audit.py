@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from faultpath.analyses.audit import AuditAnalysis, audit_analysis
-from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences.wording import counted
+from faultpath.analyses.model import AuditResult
 from faultpath.analyses.stopping import with_earlier_analyses
 from faultpath.api.display import Display
 from faultpath.api.folders import (
@@ -27,10 +26,13 @@ from faultpath.api.runs import Run
 from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import write_file, write_text
 from faultpath.core.files.parquet import Unreadable
+from faultpath.core.text import counted
 from faultpath.faults import FaultText
 from faultpath.report.inputs import ReportInput
+from faultpath.report.sentences.findings import said
 from faultpath.run import system_shown
 from faultpath.run.execution.runner import RunResult
+from faultpath.run.findings import Finding, Unrecorded, Unrepeated
 from faultpath.run.question import AuditCall
 from faultpath.run.store.folder import OUTCOMES, read_regular, seal
 from faultpath.run.store.signals import SIGNALS, Signals, decode_signals, encode_signals
@@ -116,12 +118,12 @@ def carry_out(audit: AuditAnalysis, job: Job, signals: bool = True) -> Run:
     record = concluded(folder, library_hash, partial(conclude, result.deliveries))
     recorded = _kept_signals(folder, result)
     if signals:
-        recorded, finding, repeats = _recorded(audit, job, record, result, recorded)
-        if not repeats:
+        recorded, finding = _recorded(audit, job, record, result, recorded)
+        if isinstance(finding, Unrepeated):
             broken = result.deliveries.model_copy(update={"repeats": False})
             record = concluded(folder, library_hash, partial(conclude, broken))
         if finding:
-            job.display.say(finding)
+            job.display.say(said(finding))
             record = record.model_copy(update={"findings": (*record.findings, finding)})
     recorded = dict(sorted(recorded.items()))
     write_text(folder / RECORD, as_text(record), folder)
@@ -134,9 +136,7 @@ def carry_out(audit: AuditAnalysis, job: Job, signals: bool = True) -> Run:
     return Run(folder, source)
 
 
-def concluded(
-    folder: Path, library_hash: str, conclude: Callable[[], DecisionRecord]
-) -> DecisionRecord:
+def concluded(folder: Path, library_hash: str, conclude: Callable[[], AuditResult]) -> AuditResult:
     """Return what is concluded; a record that the folder holds of these trials stands in it: see
     `with_earlier_analyses`.
 
@@ -144,7 +144,7 @@ def concluded(
     """
     if not os.path.lexists(folder / RECORD):
         return conclude()
-    before = parsed(read_regular(folder / RECORD), folder / RECORD, DecisionRecord)
+    before = parsed(read_regular(folder / RECORD), folder / RECORD, AuditResult)
     if before.facts.library_hash != library_hash:  # other results
         return conclude()
     return with_earlier_analyses(conclude(), (before,))
@@ -164,12 +164,11 @@ def _kept_signals(folder: Path, result: RunResult) -> Signals:
 def _recorded(
     audit: AuditAnalysis,
     job: Job,
-    record: DecisionRecord,
+    record: AuditResult,
     result: RunResult,
     recorded: Signals,
-) -> tuple[Signals, str, bool]:
-    """Run the scenes that the report begins with once more; return signals, a finding, and whether
-    all trials came out as before.
+) -> tuple[Signals, Finding | None]:
+    """Run the scenes that the report begins with once more; return signals and a finding.
 
     What goes wrong here is a finding, never an error of the audit.
     """
@@ -182,7 +181,7 @@ def _recorded(
         if (at.scene, at.seed) in few and at.condition in named and at not in recorded
     ]
     if not missing:
-        return recorded, "", True
+        return recorded, None
     try:
         with job.display.progress("Recording signals") as show:
 
@@ -192,21 +191,27 @@ def _recorded(
 
             replays = run_again(before, audit.plan, audit.system, job.executor, missing, note)
     except UserError as error:
-        return recorded, f"No signals were recorded: {error}", True
+        return recorded, Unrecorded(error=str(error))
     except KeyboardInterrupt:
         called = job.display.called
         job.display.say(f"No signals were recorded; run the same {called} again to have them.")
-        return recorded, "", True
+        return recorded, None
     recorded = {
         **recorded,
         **{replay.address: replay.signals for replay in replays if replay.signals},
     }
-    unlike = [replay for replay in replays if replay.differs]
+    unlike = [replay for replay in replays if replay.deviation]
     if not unlike:
-        return recorded, "", True
-    at, differs = unlike[0].address, unlike[0].differs
-    finding = (
-        f"Signals of {len(unlike)} of {counted(len(replays), 'trial')} were not recorded: run "
-        f"again, it came out otherwise: {at.variant}, {at.condition}, {at.scene}: {differs}."
+        return recorded, None
+    (first, *_) = unlike
+    assert first.deviation is not None
+    at = first.address
+    finding = Unrepeated(
+        trials=len(unlike),
+        of=len(replays),
+        variant=at.variant,
+        condition=at.condition,
+        scene=at.scene,
+        deviation=first.deviation,
     )
-    return recorded, finding, False
+    return recorded, finding

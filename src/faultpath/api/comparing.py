@@ -1,22 +1,20 @@
 """`faultpath.compare`: several finished audits side by side."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from os import PathLike
 from pathlib import Path
 
-from faultpath.analyses.map.record import MapRecord
-from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.scan.record import ScanRecord
+from faultpath.analyses.map.model import MapResult
+from faultpath.analyses.model import AuditResult
+from faultpath.analyses.scan.model import ScanResult
 from faultpath.api.runs import Run, open_run
 from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import check_output, write_text
 from faultpath.report.compared import Compared, differing, together
 from faultpath.report.comparison import headline, page, sentences
 from faultpath.report.frame import PAGE
-
-WORDS = ("headline", "sentences", "would_change", "commands")
-"""Words that results are made into, as far as one has them."""
+from faultpath.report.sentences.words import words
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -62,13 +60,11 @@ class RunComparison:
         return f"<Comparison: {self.headline}>"
 
 
-def in_json(
-    folder: str | Path, record: DecisionRecord | MapRecord | ScanRecord
-) -> dict[str, object]:
+def in_json(folder: str | Path, record: AuditResult | MapResult | ScanResult) -> dict[str, object]:
     """Return what `--json` prints of a result, for `json.dumps`: its words, and its numbers."""
     return {
         "folder": str(folder),
-        **{word: getattr(record, word) for word in WORDS if hasattr(record, word)},
+        **{name: said for name, said in asdict(words(record)).items() if said is not None},
         "record": record.model_dump(mode="json"),
     }
 

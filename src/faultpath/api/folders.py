@@ -10,8 +10,7 @@ import numpy as np
 from pydantic import BaseModel
 
 from faultpath.analyses.audit import faulted_taps
-from faultpath.analyses.model import SHARED
-from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.model import SHARED, AuditResult
 from faultpath.core.errors import UserError
 from faultpath.core.files.parquet import Unreadable
 from faultpath.core.files.plain import Misread, model_of
@@ -44,7 +43,7 @@ def read_run(folder: Path) -> ReportInput:
     """
     provenance = read_provenance(folder)
     contents = unseal(folder, provenance.files, MADE_FROM)
-    record = parsed(contents[RECORD], folder / RECORD, DecisionRecord)
+    record = parsed(contents[RECORD], folder / RECORD, AuditResult)
     shown = parsed(contents[SYSTEM], folder / SYSTEM, SystemShown)
     deliveries = parsed(contents[DELIVERIES], folder / DELIVERIES, Deliveries)
     traces = _decoded(decode_traces, contents, folder / TRACES)
@@ -88,7 +87,7 @@ def parsed(data: bytes, path: Path, model: type[_Model]) -> _Model:
 
 
 def _doubts(
-    record: DecisionRecord,
+    record: AuditResult,
     provenance: RunProvenance,
     shown: SystemShown,
     trials: Trials,
@@ -109,7 +108,7 @@ def _doubts(
         yield "the result leaves out a finding of the run"
 
 
-def _other_trials(record: DecisionRecord, trials: Trials) -> Iterator[str]:
+def _other_trials(record: AuditResult, trials: Trials) -> Iterator[str]:
     """Yield where the record tells of other trials than the outcomes hold."""
     question = record.question
     variants = set(
@@ -135,7 +134,7 @@ def _other_trials(record: DecisionRecord, trials: Trials) -> Iterator[str]:
         yield f"the result has a metric '{name}', and the outcomes have no such column"
 
 
-def _other_effects(record: DecisionRecord) -> Iterator[str]:
+def _other_effects(record: AuditResult) -> Iterator[str]:
     """Yield where effects do not fit the conditions of the record, or each other."""
     conditions = {condition.name for condition in record.conditions}
     results = (*record.effects, *record.break_evens)
@@ -147,9 +146,7 @@ def _other_effects(record: DecisionRecord) -> Iterator[str]:
         yield "the result has effects that contradict each other"
 
 
-def _other_taps(
-    record: DecisionRecord, interface: Interface, deliveries: Deliveries
-) -> Iterator[str]:
+def _other_taps(record: AuditResult, interface: Interface, deliveries: Deliveries) -> Iterator[str]:
     """Yield where the record names other faulted taps than interface and receipts."""
     question = record.question
     taps = {(c.name, reader) for c in interface.channels for reader in c.readers}

@@ -13,7 +13,7 @@ import numpy as np
 
 from faultpath.analyses.decide import decide
 from faultpath.analyses.judging import PairedResults, pair_results
-from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.model import AuditResult
 from faultpath.api.audit import concluded
 from faultpath.api.display import Display, display
 from faultpath.api.folders import MADE_FROM, RECORD, SYSTEM, as_text
@@ -23,6 +23,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import begin, locked, write_file, write_text
 from faultpath.interface import Interface
 from faultpath.report.inputs import ReportInput
+from faultpath.report.sentences.findings import said
 from faultpath.run.deliveries import Deliveries, RowDeliveries
 from faultpath.run.execution.provenance import amend, run_provenance
 from faultpath.run.execution.runner import RunResult
@@ -68,7 +69,7 @@ def judge(
     if (folder / "manifest.json").exists():
         raise UserError(f"{folder} holds an audit's trials: give another folder with --out.")
 
-    def conclude() -> DecisionRecord:
+    def conclude() -> AuditResult:
         return decide(
             paired.question, paired.facts, paired.conditions, paired.trials, paired.findings
         )
@@ -86,7 +87,7 @@ def judge(
     run.report()
     if not shown.is_command:
         for finding in paired.findings:
-            shown.say(finding)
+            shown.say(said(finding))
     return run
 
 

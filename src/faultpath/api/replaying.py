@@ -7,9 +7,9 @@ from platform import python_version
 
 from faultpath.analyses.audit import audit_analysis
 from faultpath.analyses.examples import choose as picked
+from faultpath.analyses.model import AuditResult
 from faultpath.analyses.pairs import by_scene, read_pairs
 from faultpath.analyses.parting import Heard, Parting, parting
-from faultpath.analyses.record import DecisionRecord
 from faultpath.api.folders import RECORD
 from faultpath.api.systems import choose
 from faultpath.core.errors import UserError
@@ -24,7 +24,8 @@ from faultpath.run.check.blocks import BlockSpec, RecordedBlock, run_blocks
 from faultpath.run.code import CodeState, named, system_code
 from faultpath.run.execution.dispatch import Built
 from faultpath.run.execution.provenance import amend, processor
-from faultpath.run.execution.recheck import difference
+from faultpath.run.execution.recheck import deviation
+from faultpath.run.findings import Deviation
 from faultpath.run.provenance import RunProvenance
 from faultpath.run.question import AuditQuestion
 from faultpath.run.store.signals import SIGNALS, Signal, encode_signals
@@ -58,8 +59,8 @@ class Replayed:
     """One trial, run again."""
 
     address: TrialAddress
-    differs: str
-    """How the second trial differs; empty where it is the same to the bit."""
+    deviation: Deviation | None
+    """Of the second trial; `None` where it is the same to the bit."""
     signals: tuple[Signal, ...] = field(default=(), repr=False)
 
 
@@ -82,7 +83,7 @@ def chosen_scenes(
 
 
 def shown_first(
-    record: DecisionRecord, trials: Trials, recorded: Iterable[TrialAddress] = ()
+    record: AuditResult, trials: Trials, recorded: Iterable[TrialAddress] = ()
 ) -> tuple[tuple[str, int], ...]:
     """Return the scenes that the report begins with, and the seed of each; of scenes that go alike
     those of `recorded` trials come first."""
@@ -205,10 +206,10 @@ def run_again(
         done += 1
         for place, scene in enumerate(task.scenes):
             for at in addresses[task.treatment.key()][scene]:
-                differs, signals = f"failed: {run.error}", ()
+                differs, signals = Deviation(raised=run.error, scenes=(scene,), of=1), ()
                 if not run.error:
                     again = Done((run.outcomes[place],), ())
-                    differs = difference([before[at]], again)
+                    differs = deviation([before[at]], again)
                     signals = () if differs else run.signals[place]
                 replays[at] = Replayed(at, differs, signals)
         note(task.treatment, done, len(tasks))
@@ -253,7 +254,7 @@ def where_parted(
         for place in range(len(trials.seeds)):
             for couple in couples:
                 one, other = (heard(*of, place, scene) for of in couple)
-                unlike = (again[of.address].differs for of in (one, other) if of.address in again)
+                unlike = (again[of.address].deviation for of in (one, other) if of.address in again)
                 if not any(unlike):
                     partings.append(parting(source.system, one, other))
     return partings

@@ -7,10 +7,9 @@ from typing import Any, TypeVar
 
 import pyarrow as pa
 
-from faultpath.analyses.gate import Answer, Ask, found, holds_when_shared
-from faultpath.analyses.map.record import MapRecord
-from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.scan.record import ScanRecord
+from faultpath.analyses.map.model import MapResult
+from faultpath.analyses.model import AuditResult
+from faultpath.analyses.scan.model import ScanResult
 from faultpath.api.folders import (
     MAP,
     MAP_MADE_FROM,
@@ -23,11 +22,13 @@ from faultpath.api.folders import (
 )
 from faultpath.core.errors import UserError
 from faultpath.core.files.parquet import read_table
+from faultpath.report.audit_tables import markdown_table
+from faultpath.report.gate import Answer, Ask, found, holds_when_shared
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
 from faultpath.report.map import write_map
 from faultpath.report.scan import write_scan
-from faultpath.report.tables import markdown_table
+from faultpath.report.sentences.words import Words, words
 from faultpath.run.provenance import RunProvenance
 from faultpath.run.store.folder import AGAIN, unseal
 from faultpath.run.store.tables import encode_outcomes
@@ -43,9 +44,15 @@ class FinishedRun:
         """Record of what ran, on what, with which code, packages and options."""
 
     @property
+    def words(self) -> Words:
+        """The result in words: `headline`, `sentences`, `findings`, `would_change` of an audit and
+        `commands` of a scan."""
+        return words(self.record)
+
+    @property
     def headline(self) -> str:
         """The result in one sentence."""
-        return self.record.headline
+        return self.words.headline
 
     def __repr__(self) -> str:
         """Return kind, folder and headline."""
@@ -58,7 +65,7 @@ class Run(FinishedRun):
     A notebook shows it as the table of its effects, with the result in words below.
     """
 
-    record: DecisionRecord
+    record: AuditResult
     """Result of the audit in numbers: `effects`, `changes`, ..."""
 
     def __init__(self, folder: Path, source: ReportInput) -> None:
@@ -69,7 +76,7 @@ class Run(FinishedRun):
     @property
     def sentences(self) -> tuple[str, ...]:
         """Answers: what follows, how sure it is and what stays open, a sentence or two each."""
-        return self.record.sentences
+        return self.words.sentences
 
     @property
     def failed(self) -> int:
@@ -115,8 +122,8 @@ class Run(FinishedRun):
 class MapRun(FinishedRun):
     """A finished reversal map: its result, and where its files are."""
 
-    record: MapRecord
-    """`headline` and `sentences` in words; `points`, `surface`, `flips`, `joint` in numbers."""
+    record: MapResult
+    """Result of the map in numbers: `points`, `surface`, `flips`, `joint`."""
 
     def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
         """Write report.html, map.svg, correlation.svg and table.md, and return their paths."""
@@ -127,8 +134,8 @@ class MapRun(FinishedRun):
 class ScanRun(FinishedRun):
     """A finished scan: its result, and where its files are."""
 
-    record: ScanRecord
-    """`headline`, `sentences` and `commands` in words; `errors`, `versions`, ... in numbers."""
+    record: ScanResult
+    """Result of the scan in numbers: `errors`, `versions`, ..."""
 
     def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
         """Write report.html, scan.svg and table.md, and return their paths."""
@@ -147,9 +154,9 @@ def open_run(folder: str | PathLike[str]) -> "Run | MapRun | ScanRun | Any":
     place = Path(folder)
     provenance = read_provenance(place)
     if MAP in provenance.files:
-        return MapRun(place, _record(place, provenance, MAP_MADE_FROM, MapRecord), provenance)
+        return MapRun(place, _record(place, provenance, MAP_MADE_FROM, MapResult), provenance)
     if SCAN in provenance.files:
-        return ScanRun(place, _record(place, provenance, SCAN_MADE_FROM, ScanRecord), provenance)
+        return ScanRun(place, _record(place, provenance, SCAN_MADE_FROM, ScanResult), provenance)
     if RECORD not in provenance.files:
         for point in entry_points(group="faultpath.runs"):
             if point.name in provenance.files:
@@ -157,7 +164,7 @@ def open_run(folder: str | PathLike[str]) -> "Run | MapRun | ScanRun | Any":
     return Run(place, read_run(place))
 
 
-_Record = TypeVar("_Record", MapRecord, ScanRecord)
+_Record = TypeVar("_Record", MapResult, ScanResult)
 
 
 def _record(

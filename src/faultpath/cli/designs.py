@@ -36,11 +36,11 @@ def scan(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     """Find which errors of a system's inputs cancel: each alone costs success, and both together
     less than either, so that correcting one of them alone does not help."""
     from faultpath.analyses.scan.sources import Ranking
-    from faultpath.analyses.tables.terminal import Parted
     from faultpath.api.comparing import in_json
     from faultpath.api.display import SafeConsole
     from faultpath.api.scanning import scan
     from faultpath.report.scan import ranking_table, tables
+    from faultpath.report.tables.terminal import Parted
     from faultpath.report.terminal import conclusion
 
     result = scan(system, **arguments, progress=display(as_json))
@@ -58,7 +58,7 @@ def scan(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
         typer.echo(json.dumps(in_json(result.folder, result.record), indent=1))
     else:
         console.print(conclusion(result.record, tables(result.record)))
-        for command in result.record.commands:
+        for command in result.words.commands or ():
             console.print(f"Next: {command}", markup=False, soft_wrap=True)
         console.print(f"Report: {result.folder / 'report.html'}", markup=False, soft_wrap=True)
     return FOUND if result.record.failed else 0

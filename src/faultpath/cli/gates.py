@@ -17,7 +17,7 @@ from faultpath.run.question import ADVANCED
 if TYPE_CHECKING:
     from faultpath.api.runs import Run
 
-_ASKS = ("reversal", "repair-behind", "undecided", "void")  # those of `faultpath.analyses.gate`
+_ASKS = ("reversal", "repair-behind", "undecided", "void")  # those of `faultpath.report.gate`
 
 FailIf = Annotated[
     list[str] | None,
@@ -73,10 +73,10 @@ class Gate:
 
     def end(self, runs: "Sequence[Run]", say: Callable[..., Any]) -> int:
         """Write what was asked for, say what a build fails for, and return the exit status."""
-        from faultpath.analyses.gate import broken
         from faultpath.core.files.atomic import write_file, write_text
         from faultpath.core.files.opening import contents
         from faultpath.report.build import junit, summary
+        from faultpath.report.gate import broken
 
         records = [run.record for run in runs]
         if self.junit is not None:

@@ -47,12 +47,12 @@ def replay(
     """Run trials of a finished run again and compare them with the run, to the bit. It runs the
     system that the run names, which has to be installed, named with --code, or trusted. Exits with
     1 where one differs."""
-    from faultpath.analyses.sentences.parting import compared, parted
-    from faultpath.analyses.sentences.wording import counted
-    from faultpath.analyses.tables.terminal import STYLES
     from faultpath.api.display import SafeConsole
     from faultpath.api.folders import RECORD, read_provenance, read_run
     from faultpath.api.replaying import chosen_scenes, keep_signals, replay, where_parted
+    from faultpath.core.text import counted
+    from faultpath.report.sentences.parting import compared, parted
+    from faultpath.report.tables.terminal import STYLES
 
     if as_json and not where:
         raise UserError("--json prints what --where finds: give --where too.")
@@ -64,11 +64,11 @@ def replay(
     say = partial(console.print, markup=False)
     again = replay(source, scenes, condition or (), say, trust, code or ())
     replays = again.trials
-    unlike = [trial for trial in replays if trial.differs]
+    unlike = [trial for trial in replays if trial.deviation]
     for trial in unlike:
         at = trial.address
         place = f"{at.variant}, {at.condition}, seed {at.seed}, {at.scene}"
-        console.print(f"{place}: {trial.differs}.", markup=False, style=STYLES["bad"])
+        console.print(f"{place}: {trial.deviation}.", markup=False, style=STYLES["bad"])
     message = (
         f"{counted(len(replays), 'trial')} in {counted(len(scenes), 'scene')} came out as in the "
         "run, to the bit."

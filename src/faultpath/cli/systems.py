@@ -37,10 +37,10 @@ def trace(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     """Print the information interface of a system and who read what, when.
 
     Exits with 1 where that differs from what is declared."""
-    from faultpath.analyses.tables.terminal import STYLES, Parted
     from faultpath.api.checks import traced
     from faultpath.api.display import SafeConsole
     from faultpath.api.job import begin
+    from faultpath.report.tables.terminal import STYLES, Parted
     from faultpath.report.terminal import interface_table, trace_table
 
     question, chosen, _, _ = begin("api.trace", TraceQuestion, system, arguments, display())
@@ -69,10 +69,10 @@ def check(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     from rich.padding import Padding
     from rich.text import Text
 
-    from faultpath.analyses.sentences.wording import counted
-    from faultpath.analyses.tables.terminal import STYLES
     from faultpath.api.checks import check
     from faultpath.api.display import SafeConsole
+    from faultpath.core.text import counted
+    from faultpath.report.tables.terminal import STYLES
 
     report = check(system, **arguments, progress=display())
     if as_json:

@@ -1,10 +1,10 @@
-"""Text from elsewhere, made fit for a terminal; sentences for names that do not exist."""
+"""Text from elsewhere, made fit for a terminal; parts of sentences."""
 
 import os
 import re
 import sys
 import unicodedata
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 from typing import Any
 
@@ -61,6 +61,21 @@ def shortened(text: str, most: int) -> str:
 def listed(names: Iterable[str]) -> str:
     """Return names in one line, `none` when there are none."""
     return ", ".join(sorted(names)) or "none"
+
+
+def counted(count: int, noun: str) -> str:
+    """Return `1 pair` or `2 pairs`."""
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
+def series(items: Sequence[str]) -> str:
+    """Return `a`, `a and b` or `a, b and c`."""
+    return " and ".join(filter(None, (", ".join(items[:-1]), items[-1])))
+
+
+def capital(words: str) -> str:
+    """Return words with a capital letter in front, whatever follows."""
+    return words[:1].upper() + words[1:]
 
 
 def unknown(what: str, name: str, known: Iterable[str]) -> str:

@@ -1,9 +1,10 @@
 """For a verb that shows results: estimates with intervals, tables, and numbers as all pages do."""
 
-from faultpath.analyses.sentences.wording import counted, interval, plain
-from faultpath.analyses.tables import MISSING, Line, Table, line
-from faultpath.analyses.tables.terminal import drawn
 from faultpath.api.display import SafeConsole
+from faultpath.core.text import counted
+from faultpath.report.sentences.wording import interval, plain
+from faultpath.report.tables import MISSING, Line, Table, line
+from faultpath.report.tables.terminal import drawn
 from faultpath.stats.contrast import Contrast
 from faultpath.stats.effects import WindowQuantiles
 from faultpath.stats.estimate import Estimate

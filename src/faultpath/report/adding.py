@@ -7,11 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.analyses.examples import choose
-from faultpath.analyses.model import CORRECT
+from faultpath.analyses.model import CORRECT, where
 from faultpath.analyses.pairs import Pair, by_scene
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.sentences.wording import where
 from faultpath.report.inputs import ReportInput
+from faultpath.report.sentences import wording
 from faultpath.report.svg import Axis, Point, Svg, covering, draw_axes, tick_label
 from faultpath.run.store.signals import TOGETHER, Signal
 from faultpath.run.store.tables import TrialAddress

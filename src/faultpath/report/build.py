@@ -3,24 +3,25 @@
 from collections.abc import Sequence
 from xml.etree import ElementTree
 
-from faultpath.analyses.gate import found
-from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences.answers import answers
-from faultpath.analyses.tables.escapes import markdown, visible
-from faultpath.report.tables import markdown_table
+from faultpath.analyses.model import AuditResult
+from faultpath.report.audit_tables import markdown_table
+from faultpath.report.gate import found
+from faultpath.report.sentences.answers import answers
+from faultpath.report.sentences.words import words
+from faultpath.report.tables.escapes import markdown, visible
 
 
-def junit(records: Sequence[DecisionRecord], conditions: Sequence[str]) -> str:
+def junit(records: Sequence[AuditResult], conditions: Sequence[str]) -> str:
     """Return JUnit's XML: a suite for each record, a case for its trials and each condition."""
     root = ElementTree.Element("testsuites", name="faultpath")
     for record in records:
-        question = record.question
+        question, said = record.question, words(record)
         name = f"{question.repair} against {question.baseline}"
         name += f" under {question.fault}" if question.fault else ""
         failed = sum(count.failed for count in record.counts)
         cases = {
             "trials-ran": f"{failed} trials failed or are missing." if failed else "",
-            "result": record.headline if record.invalid else "",
+            "result": said.headline if record.invalid else "",
         }
         for condition in conditions:
             answer = found(record, condition)
@@ -37,16 +38,17 @@ def junit(records: Sequence[DecisionRecord], conditions: Sequence[str]) -> str:
             if failure:
                 wrong = ElementTree.SubElement(place, "failure", message=visible(failure))
                 wrong.text = visible(failure)
-        text = "\n".join((record.headline, *record.sentences, *record.findings))
+        text = "\n".join((said.headline, *said.sentences, *said.findings))
         ElementTree.SubElement(suite, "system-out").text = visible(text)
     return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
 
 
-def summary(records: Sequence[DecisionRecord], conditions: Sequence[str]) -> str:
+def summary(records: Sequence[AuditResult], conditions: Sequence[str]) -> str:
     """Return what was decided as Markdown: a headline, what a build fails for, answers, tables."""
     parts: list[str] = []
     for record in records:
-        parts.append(f"### {markdown(record.headline)}")
+        said = words(record)
+        parts.append(f"### {markdown(said.headline)}")
         wrong = {condition: found(record, condition) for condition in conditions}
         marks = [
             f"- **{'fails' if answer else 'passes'}** `{name}`: {markdown(answer.reason)}"
@@ -54,8 +56,8 @@ def summary(records: Sequence[DecisionRecord], conditions: Sequence[str]) -> str
         ]
         parts += ["\n".join(marks)] if marks else []
         parts += [f"**{label}.** {markdown(answer)}" for label, answer in answers(record).items()]
-        if record.findings:
-            noted = "\n".join(f"- {markdown(finding)}" for finding in record.findings)
+        if said.findings:
+            noted = "\n".join(f"- {markdown(finding)}" for finding in said.findings)
             parts.append(f"**Found in the run.**\n\n{noted}")
         parts.append(markdown_table(record))
     return "\n\n".join(parts).rstrip() + "\n"

@@ -11,11 +11,12 @@ from pathlib import Path
 from faultpath.analyses.contrasts import effect_name
 from faultpath.analyses.effects import Effect
 from faultpath.analyses.facts import ComparisonFacts, Question
-from faultpath.analyses.model import CORRECT, SHARED
-from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences import phrases, wording
+from faultpath.analyses.model import CORRECT, SHARED, AuditResult
 from faultpath.analyses.sweep import decide_sizes
 from faultpath.report.inputs import ReportInput
+from faultpath.report.sentences import phrases, wording
+from faultpath.report.sentences.findings import of_audit
+from faultpath.report.sentences.headline import headline
 from faultpath.run.provenance import RunProvenance
 from faultpath.stats.estimate import Sign
 
@@ -38,7 +39,7 @@ class Compared:
     the adjusted p. `None` where every audit stands by itself."""
 
     @property
-    def record(self) -> DecisionRecord:
+    def record(self) -> AuditResult:
         """Decisions of the audit."""
         return self.source.record
 
@@ -71,11 +72,16 @@ class Compared:
     @property
     def headline(self) -> str:
         """Its own headline, qualified where not all that it decided stands over all sizes."""
-        own, family = self.record.headline, self.family or {}
+        own, family = headline(self.record), self.family or {}
         fallen = any(
             e.sign and not family.get(e.condition, (e.sign, 0))[0] for e in self.record.effects
         )
         return f"By itself, and not over all sizes: {own}" if fallen else own
+
+    @property
+    def findings(self) -> tuple[str, ...]:
+        """What was found in its trials, in words."""
+        return of_audit(self.record)
 
     def absent(self, condition: str) -> str:
         """Say why it has no effect under a condition."""

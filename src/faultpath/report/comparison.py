@@ -8,13 +8,9 @@ from rich.padding import Padding
 from rich.text import Text
 
 from faultpath.analyses.family import ALPHA
-from faultpath.analyses.model import SHARED
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.sentences.wording import series, where
-from faultpath.analyses.tables import MISSING, Entry, Line, Table, line
-from faultpath.analyses.tables.html import html
-from faultpath.analyses.tables.terminal import Parted, drawn
-from faultpath.core.text import shortened
+from faultpath.analyses.model import SHARED, where
+from faultpath.core.text import series, shortened
+from faultpath.report.audit_tables import decided_for
 from faultpath.report.compared import (
     Compared,
     Facts,
@@ -26,8 +22,11 @@ from faultpath.report.compared import (
 )
 from faultpath.report.effects import Row, panel, shared_axis
 from faultpath.report.frame import render
+from faultpath.report.sentences import wording
 from faultpath.report.svg import tick_label
-from faultpath.report.tables import decided_for
+from faultpath.report.tables import MISSING, Entry, Line, Table, line
+from faultpath.report.tables.html import html
+from faultpath.report.tables.terminal import Parted, drawn
 from faultpath.run.store.folder import OUTCOMES
 
 _LABEL = 28

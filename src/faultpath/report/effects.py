@@ -4,11 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from faultpath.analyses.effects import Effect
-from faultpath.analyses.model import ConditionBreakEven
-from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.sentences.phrases import in_short
-from faultpath.analyses.sentences.shares import ahead
+from faultpath.analyses.model import AuditResult, ConditionBreakEven
+from faultpath.report.sentences import wording
+from faultpath.report.sentences.phrases import in_short
+from faultpath.report.sentences.shares import ahead
 from faultpath.report.svg import Axis, Svg, covering, draw_axes, shortened, text_width, tick_label
 
 _PITCH, _TOP, _NUMBERS = 48.0, 44.0, 146.0
@@ -39,7 +38,7 @@ class EffectRow:
     """Whether a grey box shows which differences could be missed."""
 
 
-def effect_rows(record: DecisionRecord) -> list[EffectRow]:
+def effect_rows(record: AuditResult) -> list[EffectRow]:
     """Return a row for every condition, all pictures on one axis."""
     effects = {effect.condition: effect for effect in record.effects}
     plot = _axis_of(record).at(6, _WIDE - 6)
@@ -70,7 +69,7 @@ def effect_rows(record: DecisionRecord) -> list[EffectRow]:
     return rows
 
 
-def effect_axis(record: DecisionRecord) -> str:
+def effect_axis(record: AuditResult) -> str:
     """Return the axis below the pictures of `effect_rows`, with whose side is which."""
     plot = _axis_of(record).at(6, _WIDE - 6)
     svg = Svg(_WIDE, 38, "Success of the repair minus success of the baseline, percentage points")
@@ -79,7 +78,7 @@ def effect_axis(record: DecisionRecord) -> str:
     return svg.render()
 
 
-def _axis_of(record: DecisionRecord) -> Axis:
+def _axis_of(record: AuditResult) -> Axis:
     return shared_axis([[("", "", effect) for effect in record.effects]])
 
 
@@ -172,7 +171,7 @@ def _mark(svg: Svg, plot: Axis, effect: Effect, y: float) -> None:
     svg.circle((plot(e.value), y), 4.5, "dot" + side if side else "dot open")
 
 
-def frequency_panels(record: DecisionRecord, beta: bool = False) -> list[tuple[str, str]]:
+def frequency_panels(record: AuditResult, beta: bool = False) -> list[tuple[str, str]]:
     """Return the expected success difference over the frequency of the fault, or over the beta
     factor, a picture for each condition with a break-even, and what is decided there.
 
@@ -221,7 +220,7 @@ def frequency_panels(record: DecisionRecord, beta: bool = False) -> list[tuple[s
     return panels
 
 
-def no_break_even(record: DecisionRecord, beta: bool = False) -> list[str]:
+def no_break_even(record: AuditResult, beta: bool = False) -> list[str]:
     """Say of each other condition what is decided there."""
     titles = {condition.name: condition.title for condition in record.conditions}
     none = f"no {'beta' if beta else 'frequency'} is significant"
@@ -233,7 +232,7 @@ def no_break_even(record: DecisionRecord, beta: bool = False) -> list[str]:
     ]
 
 
-def _shares(record: DecisionRecord, beta: bool) -> list[ConditionBreakEven]:
+def _shares(record: AuditResult, beta: bool) -> list[ConditionBreakEven]:
     shares = record.break_even_beta if beta else record.break_even
     return [share for share in shares if share.curve]
 

@@ -16,10 +16,11 @@ from typing import Any
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.tables.escapes import visible
 from faultpath.core.files.atomic import begin, check_mark, write_text
+from faultpath.core.text import counted
 from faultpath.core.version import __version__
+from faultpath.report.sentences import wording
+from faultpath.report.tables.escapes import visible
 
 PAGE = b'<meta name="generator" content="faultpath '
 """Text in the head of every page."""
@@ -38,7 +39,7 @@ def render(
     """Return the template `page` with its styles and scripts inside, and the policy on them.
 
     All are looked for in the folder `templates` of `package`, and then in ours. Every template has
-    `wording` as `w`.
+    `counted`, and `wording` as `w`.
     """
     environment, sources = _environment(package)
     texts = [
@@ -54,7 +55,7 @@ def render(
         "img-src data:; base-uri 'none'; form-action 'none'"
     )
     inside = {"policy": policy, "styles": Markup(texts[0]), "scripts": Markup(texts[1])}
-    named = {"version": __version__, "w": wording, **content}
+    named = {"version": __version__, "w": wording, "counted": counted, **content}
     return environment.get_template(page).render(**inside, **named)
 
 

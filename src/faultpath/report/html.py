@@ -5,18 +5,10 @@ from pathlib import Path
 from markupsafe import Markup
 
 from faultpath.analyses.effects import Effect
-from faultpath.analyses.model import SHARED
+from faultpath.analyses.model import SHARED, AuditResult, where
 from faultpath.analyses.pairs import PairKind, counts, is_sample, read_pairs
-from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences import phrases, wording
-from faultpath.analyses.sentences.answers import answers
-from faultpath.analyses.tables.html import html
 from faultpath.report.adding import adding, adding_panels
-from faultpath.report.effects import effect_axis, effect_rows, frequency_panels, no_break_even
-from faultpath.report.frame import STYLES, render, write_pages
-from faultpath.report.inputs import ReportInput
-from faultpath.report.pair_grid import pair_grid, pair_key
-from faultpath.report.tables import (
+from faultpath.report.audit_tables import (
     SHOWN,
     by_condition,
     by_threshold,
@@ -26,6 +18,14 @@ from faultpath.report.tables import (
     median_time,
     secondary,
 )
+from faultpath.report.effects import effect_axis, effect_rows, frequency_panels, no_break_even
+from faultpath.report.frame import STYLES, render, write_pages
+from faultpath.report.inputs import ReportInput
+from faultpath.report.pair_grid import pair_grid, pair_key
+from faultpath.report.sentences import phrases, wording
+from faultpath.report.sentences.answers import answers
+from faultpath.report.sentences.words import words
+from faultpath.report.tables.html import html
 from faultpath.report.taps import fork_panel, forks
 from faultpath.report.viewer import viewer_data
 
@@ -51,7 +51,7 @@ def report_page(source: ReportInput) -> str:
         (*STYLES, "viewer.css"),
         ("cells.js", "page.js", "viewer.js"),
         record=record,
-        headline=record.headline,
+        words=words(record),
         estimand=phrases.estimand(question, facts),
         question=question,
         facts=facts,
@@ -112,7 +112,7 @@ def write_report(source: ReportInput, folder: Path) -> list[Path]:
     return write_pages(pages, folder)
 
 
-def _finding(record: DecisionRecord) -> list[tuple[Effect, str]]:
+def _finding(record: AuditResult) -> list[tuple[Effect, str]]:
     """Return the two effects of a reversal, each with where it holds; without one, nothing.
 
     Of an interaction only the change is decided: an effect by itself may be a point estimate.
@@ -120,5 +120,5 @@ def _finding(record: DecisionRecord) -> list[tuple[Effect, str]]:
     effects = {effect.condition: effect for effect in record.effects}
     for moved in record.changes:
         if moved.turn == "reversal" and {moved.isolated, SHARED} <= effects.keys():
-            return [(effects[p], wording.where(p)) for p in (moved.isolated, SHARED)]
+            return [(effects[p], where(p)) for p in (moved.isolated, SHARED)]
     return []

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field
 
-from faultpath.analyses.record import DecisionRecord
+from faultpath.analyses.model import AuditResult
 from faultpath.run import SystemShown, Trials
 from faultpath.run.provenance import RunProvenance
 from faultpath.run.store.signals import Signal, Signals
@@ -13,7 +13,7 @@ from faultpath.run.store.tables import TrialAddress
 class ReportInput:
     """One finished audit: the record, where it came from, and the trials behind it."""
 
-    record: DecisionRecord
+    record: AuditResult
     provenance: RunProvenance
     system: SystemShown
     """Interface, how baseline and repair are wired, and floor plans."""

@@ -5,19 +5,21 @@ from pathlib import Path
 from markupsafe import Markup
 
 from faultpath.analyses.map.lattice import SHARED
-from faultpath.analyses.map.record import MapRecord
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.sentences.maps import estimand
-from faultpath.analyses.tables import Entry, Line, Table, line
-from faultpath.analyses.tables.html import html
-from faultpath.analyses.tables.markdown import block
+from faultpath.analyses.map.model import MapResult
+from faultpath.core.text import counted
 from faultpath.report.frame import render, write_pages
 from faultpath.report.map_pictures import correlation_picture, map_picture
+from faultpath.report.sentences import wording
+from faultpath.report.sentences.maps import estimand, size_label
+from faultpath.report.sentences.words import words
+from faultpath.report.tables import Entry, Line, Table, line
+from faultpath.report.tables.html import html
+from faultpath.report.tables.markdown import block
 from faultpath.run.provenance import RunProvenance
 from faultpath.stats.contrast import MIN_SCENES
 
 
-def tables(record: MapRecord) -> tuple[Table, ...]:
+def tables(record: MapResult) -> tuple[Table, ...]:
     """Return how large an error reverses the ranking, and the differences at one or equal errors.
 
     With too few scenes for a significant difference there is no ranking that could reverse.
@@ -26,7 +28,7 @@ def tables(record: MapRecord) -> tuple[Table, ...]:
     return *flips, _conditions(record)
 
 
-def _conditions(record: MapRecord) -> Table:
+def _conditions(record: MapResult) -> Table:
     question, facts = record.question, record.facts
     of = {point.errors: point for point in record.points}
     lines: list[Line] = []
@@ -39,7 +41,7 @@ def _conditions(record: MapRecord) -> Table:
                 text = f"{wording.signed(point.difference)} {ends}"
                 entry = Entry(text=text, detected=point.sign != 0)
             entries.append(entry)
-        lines.append(line(facts.size_label(size), *entries))
+        lines.append(line(size_label(facts, size), *entries))
     return Table(
         name="conditions",
         title=f"{question.repair} minus {question.baseline}, success, pp",
@@ -47,28 +49,28 @@ def _conditions(record: MapRecord) -> Table:
         columns=(*(f"{name} alone" for name in facts.modules), "shared"),
         lines=tuple(lines),
         notes=(
-            f"{wording.counted(record.scenes, 'scene')} of {facts.library}, "
+            f"{counted(record.scenes, 'scene')} of {facts.library}, "
             f"{wording.seeds(question.seeds)}. Intervals hold at all {len(record.points)} pairs of "
             "errors at once. Significant: the interval leaves out 0, and a sign test agrees.",
         ),
     )
 
 
-def _flips(record: MapRecord) -> Table:
+def _flips(record: MapResult) -> Table:
     question, facts = record.question, record.facts
     ahead = {1: question.repair, -1: question.baseline}
     lines: list[Line] = []
     for flip in record.flips:
         kept = turned = "neither"
         if flip.start and flip.until is not None:
-            kept = f"{ahead[flip.start]}, {facts.size_label(flip.until)}"
+            kept = f"{ahead[flip.start]}, {size_label(facts, flip.until)}"
         if flip.turned and flip.first is not None and flip.last is not None:
-            turned = f"{ahead[flip.turned]}, {facts.size_label(flip.first)}"
+            turned = f"{ahead[flip.turned]}, {size_label(facts, flip.first)}"
             if abs(flip.last) < facts.up_to:
-                turned += f" to {facts.size_label(flip.last)}"
+                turned += f" to {size_label(facts, flip.last)}"
         condition = SHARED if flip.condition == SHARED else f"{flip.condition} alone"
         direction = "above 0" if flip.direction > 0 else "below 0"
-        estimate = "no turn" if flip.estimate is None else facts.size_label(flip.estimate)
+        estimate = "no turn" if flip.estimate is None else size_label(facts, flip.estimate)
         lines.append(line(condition, direction, kept, estimate, turned))
     return Table(
         name="flips",
@@ -85,7 +87,7 @@ def _flips(record: MapRecord) -> Table:
     )
 
 
-def page(record: MapRecord, provenance: RunProvenance) -> str:
+def page(record: MapResult, provenance: RunProvenance) -> str:
     """Return the map as one page that opens without a network."""
     *turns, conditions = tables(record)
     return render(
@@ -94,8 +96,8 @@ def page(record: MapRecord, provenance: RunProvenance) -> str:
         question=record.question,
         facts=record.facts,
         provenance=provenance,
-        sentences=record.sentences,
-        headline=record.headline,
+        words=words(record),
+        up_to=size_label(record.facts, record.facts.up_to),
         map=Markup(map_picture(record).render()),
         curve=Markup(correlation_picture(record).render()),
         flips=Markup(html(turns[0])) if turns else "",
@@ -106,7 +108,7 @@ def page(record: MapRecord, provenance: RunProvenance) -> str:
     )
 
 
-def write_map(record: MapRecord, provenance: RunProvenance, folder: Path) -> list[Path]:
+def write_map(record: MapResult, provenance: RunProvenance, folder: Path) -> list[Path]:
     """Write `report.html`, `map.svg`, `correlation.svg` and `table.md`; return their paths."""
     pages = {
         "report.html": page(record, provenance),
@@ -117,6 +119,6 @@ def write_map(record: MapRecord, provenance: RunProvenance, folder: Path) -> lis
     return write_pages(pages, folder)
 
 
-def table_markdown(record: MapRecord) -> str:
+def table_markdown(record: MapResult) -> str:
     """Return all tables as Markdown."""
     return "\n\n".join(map(block, tables(record))) + "\n"

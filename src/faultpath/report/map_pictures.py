@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 from itertools import pairwise, product
 
-from faultpath.analyses.map.record import MapRecord
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.sentences.maps import at_point
+from faultpath.analyses.map.model import MapResult
+from faultpath.report.sentences import wording
+from faultpath.report.sentences.maps import at_point, headline
 from faultpath.report.svg import (
     Axis,
     Point,
@@ -25,12 +25,12 @@ _SHADES = ((30.0, "0.62"), (10.0, "0.42"), (0.0, "0.22"))
 _EQUAL = "0: both succeed equally often"
 
 
-def map_picture(record: MapRecord) -> Svg:
+def map_picture(record: MapResult) -> Svg:
     """Return the map: who is decided to be ahead where, the estimate's zero, conditions and
     points."""
     question, facts, side = record.question, record.facts, _SIDE
     title = f"Reversal map of {facts.system}: {question.repair} against {question.baseline}"
-    svg = Svg(_LEFT + side + _RIGHT, _TOP + side + 48, title, record.headline)
+    svg = Svg(_LEFT + side + _RIGHT, _TOP + side + 48, title, headline(record))
     x = Axis(-facts.up_to, facts.up_to, _LEFT, _LEFT + side)
     y = Axis(-facts.up_to, facts.up_to, _TOP + side, _TOP)
     hatch = svg.hatch("baseline", "range baseline", 6)
@@ -69,7 +69,7 @@ def map_picture(record: MapRecord) -> Svg:
     return svg
 
 
-def _areas(svg: Svg, record: MapRecord, x: Axis, y: Axis, hatch: str) -> None:
+def _areas(svg: Svg, record: MapResult, x: Axis, y: Axis, hatch: str) -> None:
     """Fill what is decided, a piece around each place of the lattice; the rest stays empty."""
     sizes, surface = record.surface.sizes, record.surface
     edges = [sizes[0], *((a + b) / 2 for a, b in pairwise(sizes)), sizes[-1]]
@@ -89,7 +89,7 @@ def _areas(svg: Svg, record: MapRecord, x: Axis, y: Axis, hatch: str) -> None:
         svg.path("".join(marked), "", fill=hatch, fill_opacity="0.5", stroke="none")
 
 
-def _zero(record: MapRecord, x: Axis, y: Axis) -> Iterator[str]:
+def _zero(record: MapResult, x: Axis, y: Axis) -> Iterator[str]:
     """Yield a stroke for each cell of the lattice that the estimate's zero crosses."""
     sizes, heights = record.surface.sizes, record.surface.difference
     ends = (sizes[0], sizes[-1])
@@ -110,7 +110,7 @@ def _zero(record: MapRecord, x: Axis, y: Axis) -> Iterator[str]:
                 yield f"M{start}L{end}"
 
 
-def _key(svg: Svg, record: MapRecord, hatch: str) -> None:
+def _key(svg: Svg, record: MapResult, hatch: str) -> None:
     """Draw what is compared, the scale of what is decided, and what is not."""
     question, cell = record.question, 46.0
     end = 6 * cell
@@ -146,7 +146,7 @@ def _entry(svg: Svg, left: float, y: float, words: str) -> float:
     return left + 28 + text_width(words, 12) + 14
 
 
-def correlation_picture(record: MapRecord) -> Svg:
+def correlation_picture(record: MapResult) -> Svg:
     """Return the expected difference over the correlation, in a variant's colour where decided."""
     joint, question, facts = record.joint, record.question, record.facts
     description = "; ".join(

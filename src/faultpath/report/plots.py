@@ -7,9 +7,9 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.analyses.sentences import wording
 from faultpath.interface import Provenance
 from faultpath.report.inputs import ReportInput
+from faultpath.report.sentences import wording
 from faultpath.run.store.signals import DRAWN, IN_FORCE, Signal, Signals
 from faultpath.run.store.tables import TrialAddress
 

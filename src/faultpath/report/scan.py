@@ -4,32 +4,33 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from faultpath.analyses.scan.model import ScanError, ScannedVersion, SecondStage
-from faultpath.analyses.scan.record import ScanRecord
+from faultpath.analyses.scan.model import ScanError, ScannedVersion, ScanResult, SecondStage
 from faultpath.analyses.scan.sources import Candidate, Ranking
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.sentences.scan import in_words, named, of_pair, size
-from faultpath.analyses.tables import Entry, Line, Table, line
-from faultpath.analyses.tables.html import html
-from faultpath.analyses.tables.markdown import block
+from faultpath.core.text import counted
 from faultpath.report.frame import render, write_pages
 from faultpath.report.scan_pictures import letters, strip, triangle
+from faultpath.report.sentences import wording
+from faultpath.report.sentences.scan import in_words, named, of_pair, size
+from faultpath.report.sentences.words import words
+from faultpath.report.tables import Entry, Line, Table, line
+from faultpath.report.tables.html import html
+from faultpath.report.tables.markdown import block
 from faultpath.run.provenance import RunProvenance
 
 
-def tables(record: ScanRecord) -> tuple[Table, ...]:
+def tables(record: ScanResult) -> tuple[Table, ...]:
     """Return the errors alone, those of a source at several readers, and the ranking."""
     together = (_together(record),) if record.versions[0].together else ()
     return _alone(record), *together, ranking_table(record.ranking)
 
 
-def every_table(record: ScanRecord) -> tuple[Table, ...]:
+def every_table(record: ScanResult) -> tuple[Table, ...]:
     """Return these, and beside them the pairs that ran: too many for a terminal."""
     first, *others = tables(record)
     return first, *((_pairs(record),) if record.versions[0].pairs else ()), *others
 
 
-def _pairs(record: ScanRecord) -> Table:
+def _pairs(record: ScanResult) -> Table:
     """Return success with each pair of errors that ran, beside each of them alone."""
     lines: list[Line] = []
     for at, pair in enumerate(record.versions[0].pairs):
@@ -55,7 +56,7 @@ def _pairs(record: ScanRecord) -> Table:
     )
 
 
-def _alone(record: ScanRecord) -> Table:
+def _alone(record: ScanResult) -> Table:
     """Return success with each error alone, in the first stage and in the second."""
     versions = record.versions
     none = [
@@ -81,7 +82,7 @@ def _alone(record: ScanRecord) -> Table:
         columns=_of_versions(record, "first stage", "second stage", "p, Holm"),
         lines=tuple(lines),
         notes=(
-            f"The first stage has {wording.counted(record.scenes[0], 'scene')}, the second "
+            f"The first stage has {counted(record.scenes[0], 'scene')}, the second "
             f"{record.scenes[1]} others. p: one-sided, that the error costs success, or raises it "
             "where it is bold and above no error; bold below 0.025.",
         ),
@@ -109,14 +110,14 @@ def _percent(rate: float | None) -> str:
     return "not run" if rate is None else f"{rate:.0f}"
 
 
-def _of_versions(record: ScanRecord, *columns: str) -> tuple[str, ...]:
+def _of_versions(record: ScanResult, *columns: str) -> tuple[str, ...]:
     """Return columns for each version, under its name where there are two."""
     if len(record.versions) == 1:
         return columns
     return tuple(f"{of.variant}: {column}" for of in record.versions for column in columns)
 
 
-def _together(record: ScanRecord) -> Table:
+def _together(record: ScanResult) -> Table:
     """Return success with a source wrong at several readers at once."""
     lines: list[Line] = []
     for at, together in enumerate(record.versions[0].together):
@@ -173,11 +174,11 @@ def _ranking_notes(ranking: Ranking) -> tuple[str, ...]:
         return (f"{order} The system shows no commands, so only readers count.",)
     return (
         f"{order} Response: median change of the command when the source errs, as a fraction of "
-        f"the command's root mean square, in {wording.counted(ranking.probed, 'scene')}.",
+        f"the command's root mean square, in {counted(ranking.probed, 'scene')}.",
     )
 
 
-def write_scan(record: ScanRecord, provenance: RunProvenance, folder: Path) -> list[Path]:
+def write_scan(record: ScanResult, provenance: RunProvenance, folder: Path) -> list[Path]:
     """Write `report.html`, `scan.svg`, `scan-2.svg` of a repair, and `table.md`; return their
     paths."""
     pages = {"report.html": page(record, provenance)}
@@ -189,7 +190,7 @@ def write_scan(record: ScanRecord, provenance: RunProvenance, folder: Path) -> l
     return write_pages(pages, folder)
 
 
-def page(record: ScanRecord, provenance: RunProvenance) -> str:
+def page(record: ScanResult, provenance: RunProvenance) -> str:
     """Return the scan as one page that opens without a network."""
     letter = [letters(version) for version in record.versions]
     versions = [
@@ -211,6 +212,7 @@ def page(record: ScanRecord, provenance: RunProvenance) -> str:
     return render(
         "scan.html.j2",
         record=record,
+        words=words(record),
         question=record.question,
         facts=record.facts,
         provenance=provenance,
@@ -220,6 +222,6 @@ def page(record: ScanRecord, provenance: RunProvenance) -> str:
     )
 
 
-def table_markdown(record: ScanRecord) -> str:
+def table_markdown(record: ScanResult) -> str:
     """Return all tables as Markdown."""
     return "\n\n".join(map(block, every_table(record))) + "\n"

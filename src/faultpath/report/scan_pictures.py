@@ -3,10 +3,9 @@
 from itertools import product
 from string import ascii_uppercase
 
-from faultpath.analyses.scan.model import ScannedPair, ScannedVersion
-from faultpath.analyses.scan.record import ScanRecord
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.sentences.scan import named, rate
+from faultpath.analyses.scan.model import ScannedPair, ScannedVersion, ScanResult
+from faultpath.report.sentences import wording
+from faultpath.report.sentences.scan import headline, named, rate
 from faultpath.report.svg import Axis, Svg, number, text_width, tick_label
 
 _CELL, _LEFT, _TOP = 30.0, 24.0, 124.0
@@ -25,7 +24,7 @@ def letters(version: ScannedVersion) -> dict[int, str]:
     return dict(zip(places, names, strict=False))
 
 
-def triangle(record: ScanRecord, version: ScannedVersion) -> Svg:
+def triangle(record: ScanResult, version: ScannedVersion) -> Svg:
     """Return the pairs coloured by what both together regain or lose against the worse one alone,
     the losses of each alone on the diagonal, and the names of the errors below."""
     letter, count = letters(version), len(version.singles)
@@ -38,7 +37,7 @@ def triangle(record: ScanRecord, version: ScannedVersion) -> Svg:
         width,
         names_top + 17 * count + 4,
         f"Pairs of errors in {version.variant}",
-        f"{record.headline} {_described(record, version)}",
+        f"{headline(record)} {_described(record, version)}",
     )
     hatch = svg.hatch("untested", "inner", 5)
     _key(svg, hatch, width)
@@ -62,7 +61,7 @@ def triangle(record: ScanRecord, version: ScannedVersion) -> Svg:
 
 
 def _cell(
-    svg: Svg, record: ScanRecord, pair: ScannedPair | None, at: tuple[float, float], hatch: str
+    svg: Svg, record: ScanResult, pair: ScannedPair | None, at: tuple[float, float], hatch: str
 ) -> None:
     left, top = at
     square = f"M{number(left)} {number(top)}h{number(_CELL)}v{number(_CELL)}h-{number(_CELL)}Z"
@@ -79,7 +78,7 @@ def _cell(
             svg.text(left + _CELL / 2, top + 19, text, "small", "middle")
 
 
-def _tip(record: ScanRecord, pair: ScannedPair) -> str:
+def _tip(record: ScanResult, pair: ScannedPair) -> str:
     first, second = (named(record.errors[place]) for place in pair.errors)
     return (
         f"{first}: {rate(pair.first)}; {second}: {rate(pair.second)}; both: {rate(pair.both)}; "
@@ -87,7 +86,7 @@ def _tip(record: ScanRecord, pair: ScannedPair) -> str:
     )
 
 
-def _described(record: ScanRecord, version: ScannedVersion) -> str:
+def _described(record: ScanResult, version: ScannedVersion) -> str:
     """Return the numbers of the listed pairs, for who does not see the picture."""
     texts = [f"{_tip(record, pair)}." for pair in version.listed]
     return " ".join(texts) or f"{len(version.pairs)} pairs were tested and none is listed."
@@ -112,7 +111,7 @@ def _key(svg: Svg, hatch: str, width: float) -> None:
     svg.text(29, 105, "on the diagonal: change by that error alone", "small", room=width - 29)
 
 
-def strip(record: ScanRecord, version: ScannedVersion, pair: ScannedPair) -> Svg:
+def strip(record: ScanResult, version: ScannedVersion, pair: ScannedPair) -> Svg:
     """Return success without an error, with each of a pair alone and with both, on one scale."""
     letter = letters(version)
     first, second = (letter[place] for place in pair.errors)

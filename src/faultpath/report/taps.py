@@ -6,7 +6,7 @@ Which taps had the fault in force comes from receipts, who reads from the wiring
 from dataclasses import dataclass
 
 from faultpath.analyses.model import CORRECT
-from faultpath.analyses.sentences.wording import series
+from faultpath.core.text import series
 from faultpath.interface import module_of
 from faultpath.report.inputs import ReportInput
 from faultpath.report.svg import Svg

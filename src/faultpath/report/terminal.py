@@ -6,37 +6,38 @@ from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
-from faultpath.analyses.map.record import MapRecord
-from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.scan.record import ScanRecord
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.sentences.answers import answers
-from faultpath.analyses.sentences.phrases import (
+from faultpath.analyses.map.model import MapResult
+from faultpath.analyses.model import AuditResult
+from faultpath.analyses.scan.model import ScanResult
+from faultpath.interface import Gap, Interface, rank, transitive_readers
+from faultpath.report.audit_tables import DIFFERENCE, by_condition, by_quantity, by_threshold
+from faultpath.report.sentences import wording
+from faultpath.report.sentences.answers import answers, would_change
+from faultpath.report.sentences.phrases import (
     for_trainings,
     in_trials_that_ran,
     not_standing,
 )
-from faultpath.analyses.tables import Line, Table, line
-from faultpath.analyses.tables.terminal import Parted, drawn
-from faultpath.interface import Gap, Interface, rank, transitive_readers
-from faultpath.report.tables import DIFFERENCE, by_condition, by_quantity, by_threshold
+from faultpath.report.sentences.words import words
+from faultpath.report.tables import Line, Table, line
+from faultpath.report.tables.terminal import Parted, drawn
 from faultpath.run.check.reads import Read
 from faultpath.run.check.tracing import TraceReport
 
 _EFFECTS = (*DIFFERENCE, "holm", "scenes", "void", "break-even")
 
 
-def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
+def decision(record: AuditResult, details: bool = False) -> RenderableType:
     """Return the decision record as text and tables: verdict, success, effects, findings.
 
     `details` adds every sentence of the record, and what would change it.
     """
-    question = record.question
+    question, said = record.question, words(record)
     void = any(effect.void for effect in record.effects)
     names = [name for name in _EFFECTS if void or name != "void"]
     success = by_quantity(record, ("baseline", "repair"))
     effects = by_condition(record, names, f"{question.repair} minus {question.baseline}")
-    parts: list[RenderableType] = [Text(record.headline, style="bold")]
+    parts: list[RenderableType] = [Text(said.headline, style="bold")]
     if fault := wording.faults(record.facts):
         parts += [Text(f"Fault: {fault}.", style="dim")]
     if record.stopping:
@@ -58,20 +59,21 @@ def decision(record: DecisionRecord, details: bool = False) -> RenderableType:
     table = by_threshold(record)
     if table is not None:
         parts += [Text(""), drawn(table)]
-    parts += _list("Found in the run", record.findings, "bold red")
+    parts += _list("Found in the run", said.findings, "bold red")
     if details:
         if any(effect.mcnemar_p is not None for effect in record.effects):
             parts += [Text(""), Parted(by_condition(record, ("p", "mcnemar", "holm")))]
-        parts += [Text(""), *map(Text, record.sentences)]
-        parts += _list("What would change this", record.would_change, "bold")
+        parts += [Text(""), *map(Text, said.sentences)]
+        parts += _list("What would change this", tuple(would_change(record)), "bold")
     return Group(*parts)
 
 
-def conclusion(record: MapRecord | ScanRecord, tables: Iterable[Table]) -> RenderableType:
+def conclusion(record: MapResult | ScanResult, tables: Iterable[Table]) -> RenderableType:
     """Return headline, sentences, findings and tables of a map or a scan."""
-    parts: list[RenderableType] = [Text(record.headline, style="bold"), Text("")]
-    parts += map(Text, record.sentences)
-    parts += [Text(f"Found in the run: {finding}", style="bold red") for finding in record.findings]
+    said = words(record)
+    parts: list[RenderableType] = [Text(said.headline, style="bold"), Text("")]
+    parts += map(Text, said.sentences)
+    parts += [Text(f"Found in the run: {finding}", style="bold red") for finding in said.findings]
     for table in tables:
         parts += [Text(""), Parted(table), *map(Text, table.notes)]
     return Group(*parts)

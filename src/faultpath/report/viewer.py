@@ -11,15 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.analyses.examples import captions, choose
-from faultpath.analyses.model import SHARED
+from faultpath.analyses.model import SHARED, AuditResult
 from faultpath.analyses.pairs import Pair, by_scene, is_sample
 from faultpath.analyses.parting import Heard, parting
-from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.sentences.parting import DIFFERS, ending
-from faultpath.analyses.sentences.parting import parted as said
 from faultpath.report.inputs import ReportInput
 from faultpath.report.plots import Plot, first_plot, plots_of
+from faultpath.report.sentences import wording
+from faultpath.report.sentences.parting import DIFFERS, ending
+from faultpath.report.sentences.parting import parted as said
 from faultpath.run.store.signals import DRAWN, IN_FORCE, Signal, Signals
 from faultpath.run.store.tables import Trace, TrialAddress, traces_of
 from faultpath.system.outcome import Outcome
@@ -136,7 +135,7 @@ def _space(source: ReportInput, flat: bool, tracked: bool) -> str:
     return "none" if not tracked else "line" if flat else "space"
 
 
-def _first_condition(record: DecisionRecord, pairs: Mapping[str, Pair]) -> str:
+def _first_condition(record: AuditResult, pairs: Mapping[str, Pair]) -> str:
     """Return the condition marked first: one on which the first scene shows what is significant."""
     signs = {effect.condition: effect.sign for effect in record.effects if effect.leads}
     apart = [

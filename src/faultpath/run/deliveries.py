@@ -6,6 +6,7 @@ from typing import Literal, Self, TypeAlias
 
 from faultpath.core.results import Result
 from faultpath.loop import TapCount, added
+from faultpath.run.findings import Finding, Unproven, Unread
 from faultpath.run.plan import Plan
 from faultpath.run.trials import Trials
 
@@ -26,10 +27,10 @@ class RowDeliveries(Result):
 class Deliveries(Result):
     """The taps of a plan, row by row; written as `deliveries.json`."""
 
-    format: Literal[1] = 1
+    format: Literal[2] = 2
     rows: tuple[RowDeliveries, ...] = ()
-    findings: tuple[str, ...] = ()
-    """Findings that a reader of the run's results has to know, a sentence or two each."""
+    findings: tuple[Finding, ...] = ()
+    """What a reader of the run's results has to know."""
     repeats: bool = True
     """Whether all trials that ran a second time came out the same."""
 
@@ -39,7 +40,7 @@ class Deliveries(Result):
         plan: Plan,
         treatments: Mapping[TreatmentPart, tuple[TapCount, ...]],
         trials: Trials,
-        findings: tuple[str, ...],
+        findings: tuple[Finding, ...],
         repeats: bool = True,
     ) -> Self:
         """Lay the counts out in the order of the plan's rows.
@@ -71,8 +72,8 @@ class Deliveries(Result):
         return added(count for row in rows for count in row.taps)
 
 
-def unread(counts: Iterable[tuple[str, TapCount]]) -> tuple[str, ...]:
-    """Name the readers that a variant declares and that never read, in any of its treatments.
+def unread(counts: Iterable[tuple[str, TapCount]]) -> tuple[Unread, ...]:
+    """Return the readers that a variant declares and that never read, in any of its treatments.
 
     `counts` are what the taps did in each treatment, with the name of the variant.
     """
@@ -81,24 +82,20 @@ def unread(counts: Iterable[tuple[str, TapCount]]) -> tuple[str, ...]:
         key = (variant, tap.channel, tap.reader)
         reads[key] = reads.get(key, 0) + tap.deliveries
     return tuple(
-        f"Variant '{variant}' declares that {reader} reads '{channel}', but it never did: take "
-        "it out of the variant's readers, or deliver the channel to it."
+        Unread(variant=variant, channel=channel, reader=reader)
         for (variant, channel, reader), count in reads.items()
         if count == 0
     )
 
 
-def unproven(met: Iterable[tuple[str, tuple[str, ...]]]) -> tuple[str, ...]:
-    """Say so where the hashes are the same in all scenes, and so prove nothing about the pairs.
+def unproven(met: Iterable[tuple[str, tuple[str, ...]]]) -> tuple[Unproven, ...]:
+    """Return a finding where the hashes are the same in all scenes.
 
     `met` are scenes of trials with the hashes that these carry.
     """
-    by_scene = set(met)
-    scenes, hashes = ({of[place] for of in by_scene} for place in (0, 1))
+    hashes_by_scene = set(met)
+    scenes = {scene for scene, _ in hashes_by_scene}
+    hashes = {of for _, of in hashes_by_scene}
     if len(scenes) < 2 or len(hashes) > 1:
         return ()
-    return (
-        f"All {len(scenes)} scenes carry the same hashes of initial state, disturbance and planner "
-        f"noise ({', '.join(map(repr, hashes.pop()))}), so nothing proves that two trials met the "
-        "same conditions: hash what each scene begins with and meets.",
-    )
+    return (Unproven(scenes=len(scenes), hashes=hashes.pop()),)

@@ -10,14 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.core.errors import UserError
+from faultpath.run.findings import Unpaired
 from faultpath.run.trials import HASHES, Bools, Floats, Rows, Trials
 from faultpath.system.declared import SceneRef
 from faultpath.system.outcome import Outcome, Status
 
 _Value = TypeVar("_Value", bound=np.generic)
-_HASHED: dict[str, str] = dict(
-    zip(HASHES, ("initial states", "disturbances", "planner noise"), strict=True)
-)
 
 
 class PairingRefused(UserError):
@@ -41,35 +39,6 @@ class Group:
         return seed if self.once is None else self.once
 
 
-@dataclass(frozen=True)
-class Mismatch:
-    """Two trials of a scene that met different conditions and are no pair."""
-
-    first: Group
-    second: Group
-    scene: str
-    seed: int
-    differences: tuple[tuple[str, str, str], ...]
-    """The name of each hash that differs, and both of its values."""
-
-    def __str__(self) -> str:
-        hashes = "; ".join(f"{name} {a[:8]!r} and {b[:8]!r}" for name, a, b in self.differences)
-        what = " and ".join(_HASHED[name] for name, _, _ in self.differences)
-        return (
-            f"{self.first} and {self.second} are no pair in scene {self.scene!r} (seed "
-            f"{self.seed}): their {what} differ ({hashes})"
-        )
-
-
-def mismatch_words(mismatches: Sequence[Mismatch]) -> tuple[str, ...]:
-    """Return one sentence that counts the mismatches and shows the first; nothing without any."""
-    if not mismatches:
-        return ()
-    first, *more = mismatches
-    others = f"; so do those of {len(more)} other pair{'s' * (len(more) > 1)}" if more else ""
-    return (f"{first}{others}.",)
-
-
 @dataclass(frozen=True, eq=False)
 class Pairs:
     """Trials of two groups, scene by scene and seed by seed.
@@ -84,7 +53,8 @@ class Pairs:
     """Those of the first and of the second group, `[seeds, scenes]`."""
     void: Bools
     """`[seeds, scenes]`."""
-    mismatches: tuple[Mismatch, ...] = ()
+    unpaired: tuple[Unpaired, ...] = ()
+    """Those that met different conditions, which are void too."""
 
     @cached_property
     def success(self) -> tuple[Floats, Floats]:
@@ -145,7 +115,7 @@ def pair(
     that draw differently, by number of candidates for one: their noise is not compared. Nor is it
     where one of them was run once, with another seed.
     Two trials that differ in their initial state, their disturbance or the planner's noise are no
-    pair: it is void and among the `mismatches`. `PairingRefused` when the groups do not hold the
+    pair: it is void and among the `unpaired`. `PairingRefused` when the groups do not hold the
     same seeds and scenes.
     """
     seeds = trials.seeds_of(first.variant, first.condition) if seeds is None else tuple(seeds)
@@ -164,7 +134,7 @@ def pair(
     one, two = one[:, some], two[:, some]
     scenes = tuple(compress(trials.scenes, some))
     void = trials.failed[one] | trials.failed[two]
-    mismatches: list[Mismatch] = []
+    unpaired: list[Unpaired] = []
     for at, seed in enumerate(seeds):
         drawn_alike = not other_noise and first.at(seed) == second.at(seed)
         hashes = [name for name in HASHES if name != "planner_noise_hash" or drawn_alike]
@@ -175,9 +145,17 @@ def pair(
                 (h, *(str(trials.texts[h][rows[at, scene]]) for rows in (one, two))) for h in hashes
             )
             differences = tuple((h, a, b) for h, a, b in values if a != b)
-            mismatches.append(Mismatch(first, second, scenes[scene].id, seed, differences))
+            unpaired.append(
+                Unpaired(
+                    first=(first.variant, first.condition),
+                    second=(second.variant, second.condition),
+                    scene=scenes[scene].id,
+                    seed=seed,
+                    differences=differences,
+                )
+            )
             void[at, scene] = True
-    return Pairs(trials, tuple(seeds), scenes, (one, two), void, tuple(mismatches))
+    return Pairs(trials, tuple(seeds), scenes, (one, two), void, tuple(unpaired))
 
 
 def _rows(trials: Trials, group: Group, seeds: Sequence[int]) -> Rows:

@@ -1,38 +1,15 @@
 """Where a result comes from."""
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import ConfigDict, Field, StringConstraints
 
 from faultpath.core.results import Frozen, Shown
+from faultpath.run.findings import Recheck
 
 FileName = Annotated[str, StringConstraints(pattern=r"^[a-z_]+\.[a-z]+$")]
 
 Sha256 = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]
-
-
-class Recheck(Shown):
-    """Scenes of a finished unit that ran a second time, and what that showed."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    why: Literal["sample", "guarded"]
-    """A few scenes of the unit by themselves, or one alone with guarded readings."""
-    unit: str
-    """Key of the unit, which its shard is named after."""
-    variant: str
-    faults: str
-    """In words."""
-    seed: int
-    scenes: tuple[str, ...]
-    unit_scenes: int
-    """How many scenes the unit has in all."""
-    differs: str = ""
-    """How the outcomes differ from those of the run; empty where they are the same to the bit."""
-    other: tuple[str, ...] = ()
-    """The scenes that came out otherwise."""
-    wrote: str = ""
-    """The reader that wrote into its reading, where the guard saw one."""
 
 
 class RunCode(Frozen):

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import hypot
 from typing import Any, NamedTuple, Protocol, TypeAlias
 
-from faultpath.analyses.sentences import wording
+from faultpath.report.sentences import wording
 from faultpath.stats.contrast import ROUNDING, Contrast, change
 from faultpath_paper.answers import ClaimVerdict, Size, StatementPart
 from faultpath_paper.cells import Printed, PublishedClaim

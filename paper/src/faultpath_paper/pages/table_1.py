@@ -1,6 +1,6 @@
 """Table I: prediction accuracy and closed-loop performance of four predictors."""
 
-from faultpath.analyses.sentences import wording
+from faultpath.report.sentences import wording
 from faultpath.system import Status
 from faultpath_paper.cells import SEEDS, Cell, Setting, of_seed, published
 from faultpath_paper.entries import (

@@ -1,6 +1,6 @@
 """Table II: what calibration errors do to four models, and what uncertainty training recovers."""
 
-from faultpath.analyses.sentences import wording
+from faultpath.report.sentences import wording
 from faultpath_paper.cells import SEEDS, Cell, Printed, calibration, of_seed, published
 from faultpath_paper.entries import EntryGroup, centimetres, published_contrasts
 from faultpath_paper.evidence.table import Measurement

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from faultpath.analyses.sentences import wording
+from faultpath.report.sentences import wording
 from faultpath_paper.cells import SEEDS, Cell, Printed, Setting, calibration, published
 from faultpath_paper.entries import EntryGroup, bracket, of_quantity, published_contrasts
 from faultpath_paper.page import (

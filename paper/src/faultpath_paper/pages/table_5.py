@@ -1,6 +1,6 @@
 """Table V: from which fault frequency on each repair pays."""
 
-from faultpath.analyses.sentences import wording
+from faultpath.report.sentences import wording
 from faultpath.stats.breakeven import break_even
 from faultpath_paper.cells import published
 from faultpath_paper.entries import EntryGroup, Made, decided

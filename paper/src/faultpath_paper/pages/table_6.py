@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from faultpath.analyses.sentences import wording
+from faultpath.report.sentences import wording
 from faultpath_paper.cells import SEEDS, Cell, calibration, published
 from faultpath_paper.entries import BLANK, EntryGroup, PublishedContrast, difference, measured
 from faultpath_paper.evidence.table import Measurement

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from faultpath.analyses.tables import Entry, Line, Table, line
+from faultpath.report.tables import Entry, Line, Table, line
 from faultpath_paper.answers import ClaimVerdict, Ledger, StatementPart
 from faultpath_paper.claims import SUBJECTS
 from faultpath_paper.report.words import (

@@ -7,12 +7,13 @@ from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
-from faultpath.analyses.sentences import wording
-from faultpath.analyses.tables import MISSING, Entry, Table, line
-from faultpath.analyses.tables.escapes import markdown
-from faultpath.analyses.tables.markdown import grid
-from faultpath.analyses.tables.model import Tone
-from faultpath.analyses.tables.terminal import STYLES
+from faultpath.core.text import counted
+from faultpath.report.sentences import wording
+from faultpath.report.tables import MISSING, Entry, Table, line
+from faultpath.report.tables.escapes import markdown
+from faultpath.report.tables.markdown import grid
+from faultpath.report.tables.model import Tone
+from faultpath.report.tables.terminal import STYLES
 from faultpath_paper.answers import Answer, ClaimVerdict, Ledger, Size
 from faultpath_paper.report import words
 
@@ -98,7 +99,7 @@ def ledger_markdown(ledger: Ledger, profile: str) -> str:
 
 
 def _about(ledger: Ledger) -> str:
-    scenes = wording.counted(ledger.scenes, "scene")
+    scenes = counted(ledger.scenes, "scene")
     return f"{ledger.library}, {scenes}, {wording.seeds(ledger.seeds)}"
 
 

@@ -3,7 +3,8 @@
 import re
 from collections.abc import Sequence
 
-from faultpath.analyses.sentences import wording
+from faultpath.core.text import counted
+from faultpath.report.sentences import wording
 from faultpath_paper.answers import Answer, ClaimVerdict, Ledger, Size, StatementPart
 
 QUICK = "quick"
@@ -63,7 +64,7 @@ def figure(of: ClaimVerdict | StatementPart) -> str:
         return ""
     write = wording.signed if of.unit in _DIFFERENCES else wording.plain
     if of.unit in _COUNTED:
-        return wording.counted(round(of.estimate), of.unit.removesuffix("s"))
+        return counted(round(of.estimate), of.unit.removesuffix("s"))
     return f"{write(of.estimate, _DIGITS.get(of.unit, 2))}{behind(of.unit)}"
 
 
@@ -129,7 +130,7 @@ def counts(sizes: Sequence[Size]) -> str:
     clauses: list[str] = []
     for size in SIZES:
         if count := compared.count(size):
-            number = str(count) if clauses else wording.counted(count, "figure")
+            number = str(count) if clauses else counted(count, "figure")
             clauses.append(f"{number} {_COUNTED_SIZES[size][count > 1]}")
     return ", ".join(clauses)
 
@@ -141,7 +142,7 @@ def sizes(ledger: Ledger) -> str:
     compared: list[Size] = [label for label in printed if label in SIZES]
     if not printed:
         return ""
-    figures = wording.counted(len(printed), "figure")
+    figures = counted(len(printed), "figure")
     if not compared:
         return f"The paper prints {figures} for these claims; this run can be compared with none."
     return (

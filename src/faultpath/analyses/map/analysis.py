@@ -12,8 +12,7 @@ from faultpath.analyses.compared import compared
 from faultpath.analyses.facts import facts_of, question_of
 from faultpath.analyses.map.decide import decided
 from faultpath.analyses.map.lattice import COARSE, Point, lattice
-from faultpath.analyses.map.model import MapFacts
-from faultpath.analyses.map.record import MapRecord
+from faultpath.analyses.map.model import MapFacts, MapResult
 from faultpath.analyses.map.surface import Differences, next_points
 from faultpath.analyses.model import CORRECT, Invalid
 from faultpath.analyses.planning import rows_of, scenes_of, two_variants
@@ -22,7 +21,7 @@ from faultpath.core.text import listed
 from faultpath.faults import Fault, FaultText, at_readers, describe, reaching
 from faultpath.interface import module_of
 from faultpath.run import Deliveries, Plan, Row, SystemSpec, Trials
-from faultpath.run.pairing import mismatch_words
+from faultpath.run.findings import Unpaired
 from faultpath.run.question import MapQuestion
 from faultpath.system.declared import Library, Variant
 from faultpath.system.system import System
@@ -69,14 +68,14 @@ class MapAnalysis(Analysis[list[Point]]):
             points += new
             plan, notice = self.plan(points), ""
 
-    def conclude(self, trials: Trials, deliveries: Deliveries, items: Sequence[Point]) -> MapRecord:
+    def conclude(self, trials: Trials, deliveries: Deliveries, items: Sequence[Point]) -> MapResult:
         """Return the record of a map, to the bit the same in whatever order its points were run.
 
         `UserError` where a point has no pair left.
         """
-        differences, unlike = self.differences(sorted(items), trials)
-        findings = (*unlike, *deliveries.findings)
-        invalid: Invalid | None = "unpaired" if unlike else None
+        differences, unpaired = self.differences(sorted(items), trials)
+        findings = (*Unpaired.of(unpaired), *deliveries.findings)
+        invalid: Invalid | None = "unpaired" if unpaired else None
         if not deliveries.repeats:
             invalid = "unrepeatable"
         return decided(
@@ -118,9 +117,9 @@ class MapAnalysis(Analysis[list[Point]]):
 
     def differences(
         self, points: Sequence[Point], trials: Trials
-    ) -> tuple[Differences, tuple[str, ...]]:
-        """Return success at all points, cut to the scenes that every one has, and what is to be
-        said of pairs that met different conditions; `UserError` where a point has no pair."""
+    ) -> tuple[Differences, tuple[Unpaired, ...]]:
+        """Return success at all points, cut to the scenes that every one has, and the pairs that
+        met different conditions; `UserError` where a point has no pair."""
         names = [self.condition(point) for point in points]
         comparison = compared(self.question.repair, self.question.baseline, names, trials)
         if comparison.void:
@@ -136,7 +135,7 @@ class MapAnalysis(Analysis[list[Point]]):
                 "no scene has all of its trials at every pair of errors: fix what made them fail."
             )
         repair, baseline = success[:, 0, whole], success[:, 1, whole]
-        return Differences(tuple(points), repair, baseline), mismatch_words(comparison.mismatches)
+        return Differences(tuple(points), repair, baseline), comparison.unpaired
 
 
 def map_analysis(

@@ -15,8 +15,7 @@ from faultpath.analyses.map.lattice import (
     sizes,
     surface_weights,
 )
-from faultpath.analyses.map.model import Flip, MapFacts, MapPoint, MapSurface
-from faultpath.analyses.map.record import MapRecord
+from faultpath.analyses.map.model import Flip, MapFacts, MapPoint, MapResult, MapSurface
 from faultpath.analyses.map.surface import (
     Combined,
     Differences,
@@ -25,6 +24,7 @@ from faultpath.analyses.map.surface import (
     simultaneous,
 )
 from faultpath.analyses.model import Invalid
+from faultpath.run.findings import Finding
 from faultpath.run.question import MapQuestion
 from faultpath.stats.estimate import Sign
 
@@ -34,9 +34,9 @@ def decided(
     facts: MapFacts,
     differences: Differences,
     failed: int = 0,
-    findings: Sequence[str] = (),
+    findings: Sequence[Finding] = (),
     invalid: Invalid | None = None,
-) -> MapRecord:
+) -> MapResult:
     """Return the record of differences, which may be simulated ones.
 
     What is said rests on the pairs of errors that were run alone: between them the surface is
@@ -50,7 +50,7 @@ def decided(
     decided, shaded = (part.signs(z) * (invalid is None) for part in (at, surface))
     signs = dict(zip(differences.points, decided.tolist(), strict=True))
     side = 2 * UNITS // SHOWN + 1
-    return MapRecord(
+    return MapResult(
         question=question,
         facts=facts,
         scenes=differences.values.shape[1],

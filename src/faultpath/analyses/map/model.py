@@ -7,8 +7,8 @@ from pydantic import Field, model_validator
 from faultpath.analyses.facts import Facts
 from faultpath.analyses.map.lattice import UNITS
 from faultpath.analyses.model import Invalid
-from faultpath.analyses.sentences.wording import MINUS
 from faultpath.core.results import Result
+from faultpath.run.findings import Finding
 from faultpath.run.question import MapQuestion
 from faultpath.stats.estimate import Sign
 
@@ -33,12 +33,6 @@ class MapFacts(Facts, allow_inf_nan=False):
     def size(self, units: int) -> float:
         """Return an error from a coordinate of a point."""
         return round(self.up_to * units / UNITS, 12) + 0.0
-
-    def size_label(self, size: float) -> str:
-        """Return a size in words: `+20 %`, or `+0.2 m`."""
-        if self.relative:
-            return f"{100 * size:+.3g} %".replace("-", MINUS) if size else "0 %"
-        return f"{size:+.3g} {self.unit}".replace("-", MINUS).removesuffix(" 1")
 
 
 class MapPoint(Result, allow_inf_nan=False):
@@ -132,7 +126,7 @@ class JointErrors(Result, allow_inf_nan=False):
 class MapResult(Result, allow_inf_nan=False):
     """The numbers of a map, decided; written as `map.json`."""
 
-    format: Literal[3] = 3
+    format: Literal[4] = 4
     question: MapQuestion
     facts: MapFacts
     scenes: int
@@ -147,7 +141,8 @@ class MapResult(Result, allow_inf_nan=False):
     """Critical value of a standard normal that holds over the whole map."""
     failed: int
     """Trials in which the program raised an error; each voids its scene at every point."""
-    findings: tuple[str, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    """What was found in its trials."""
 
     def winner(self, sign: int) -> str:
         """Return the variant of a decided side."""

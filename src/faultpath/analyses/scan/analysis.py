@@ -20,9 +20,8 @@ from faultpath.analyses.scan.errors import (
     label,
     most_conditions,
 )
-from faultpath.analyses.scan.model import ScanError, ScanFacts
+from faultpath.analyses.scan.model import ScanError, ScanFacts, ScanResult
 from faultpath.analyses.scan.ranking import PROBED_SCENES, ranking
-from faultpath.analyses.scan.record import ScanRecord
 from faultpath.analyses.scan.sources import Candidate, Ranking, candidates
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
@@ -210,7 +209,7 @@ class ScanAnalysis(Analysis[Scanned]):
         for row in rows_of(label(errors) or CORRECT, by_variant, self.question.seeds):
             yield row.model_copy(update={"scenes": scenes})
 
-    def conclude(self, trials: Trials, deliveries: Deliveries, items: Scanned) -> ScanRecord:
+    def conclude(self, trials: Trials, deliveries: Deliveries, items: Scanned) -> ScanResult:
         """Return the result; `UserError` where no trial of some condition is left."""
         return concluded(self.question, self.facts, self.ranking, items, trials, deliveries)
 

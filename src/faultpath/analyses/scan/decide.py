@@ -14,14 +14,14 @@ from faultpath.analyses.scan.model import (
     ScanFacts,
     ScannedPair,
     ScannedVersion,
+    ScanResult,
     SecondStage,
     Together,
 )
-from faultpath.analyses.scan.record import ScanRecord
 from faultpath.analyses.scan.sources import Ranking
 from faultpath.core.errors import UserError
 from faultpath.run import Deliveries, Group, Trials, pair
-from faultpath.run.pairing import Mismatch, mismatch_words
+from faultpath.run.findings import Unpaired
 from faultpath.run.question import ScanQuestion
 from faultpath.stats.cancelling import LEVEL, MOST, Pair, StageOne, cancelling, stage_one
 from faultpath.stats.inputs import Floats
@@ -71,7 +71,7 @@ def _stages(
 
 def successes(
     trials: Trials, variant: str, conditions: Iterable[str], scenes: Sequence[str]
-) -> tuple[Successes, tuple[Mismatch, ...]]:
+) -> tuple[Successes, tuple[Unpaired, ...]]:
     """Return success without an error and under some conditions, in some scenes, and the trials
     that met other conditions than those without an error, which are left out."""
     chosen = set(scenes)
@@ -79,10 +79,10 @@ def successes(
     kept = tuple(scene for scene in trials.scenes if scene.id in chosen)
     part = replace(trials, scenes=kept, index=trials.index[..., inside])
     success: dict[str, Floats] = {}
-    mismatches: list[Mismatch] = []
+    unpaired: list[Unpaired] = []
     for condition in (CORRECT, *conditions):
         pairs = pair(part, Group(variant, condition), Group(variant, CORRECT))
-        mismatches += pairs.mismatches
+        unpaired += pairs.unpaired
         means = pairs.success[0].mean(axis=1)
         success[condition] = np.where(pairs.void.any(axis=0), np.nan, means)
         if np.isnan(success[condition]).all():
@@ -92,7 +92,7 @@ def successes(
                 f"no trial of {variant} under {condition} is left, because all failed ({why}): fix "
                 "what made them fail, or give a smaller error with --fault."
             )
-    return success, tuple(mismatches)
+    return success, tuple(unpaired)
 
 
 def concluded(
@@ -102,20 +102,19 @@ def concluded(
     scanned: Scanned,
     trials: Trials,
     deliveries: Deliveries,
-) -> ScanRecord:
+) -> ScanResult:
     """Return the result of a scan.
 
     Raises `UserError` where no trial of a condition is left.
     """
-    mismatches: list[Mismatch] = []
-    versions = [_version(name, scanned, trials, mismatches) for name in question.variants]
-    unlike = mismatch_words(mismatches)
-    invalid: Invalid | None = "unpaired" if unlike else None
+    unpaired: list[Unpaired] = []
+    versions = [_version(name, scanned, trials, unpaired) for name in question.variants]
+    invalid: Invalid | None = "unpaired" if unpaired else None
     if not deliveries.repeats:
         invalid = "unrepeatable"
     if invalid:
         versions = [_without_claims(version) for version in versions]
-    return ScanRecord(
+    return ScanResult(
         question=question,
         facts=facts,
         ranking=ranking,
@@ -126,16 +125,16 @@ def concluded(
         versions=tuple(versions),
         invalid=invalid,
         failed=int(trials.failed.sum()),
-        findings=(*unlike, *deliveries.findings),
+        findings=(*Unpaired.of(unpaired), *deliveries.findings),
     )
 
 
 def _version(
-    variant: str, scanned: Scanned, trials: Trials, mismatches: list[Mismatch]
+    variant: str, scanned: Scanned, trials: Trials, unpaired: list[Unpaired]
 ) -> ScannedVersion:
     names = [label([error]) for error in scanned.tried]
     success, unlike = successes(trials, variant, names, scanned.first)
-    mismatches += unlike
+    unpaired += unlike
     acted = [_acted(trials, variant, name) for name in names]
     first = _first_stage(scanned.tried, success, acted)
     conditions = {at: label([scanned.errors[place] for place in at]) for at in scanned.conditions}
@@ -143,7 +142,7 @@ def _version(
         return ScannedVersion(variant=variant, first=first, singles=(), pairs=(), together=())
     names = [name for name in conditions.values() if name]
     success, unlike = successes(trials, variant, names, scanned.second)
-    mismatches += unlike
+    unpaired += unlike
     by_errors = {places: success[name or CORRECT] for places, name in conditions.items()}
     singles, pairs = _second_stage(scanned, by_errors)
     return ScannedVersion(

@@ -8,6 +8,7 @@ from faultpath.analyses.facts import Facts
 from faultpath.analyses.model import Invalid
 from faultpath.analyses.scan.sources import Ranking
 from faultpath.core.results import Result
+from faultpath.run.findings import Finding
 from faultpath.run.question import ScanQuestion
 from faultpath.stats.estimate import Sign
 
@@ -132,7 +133,7 @@ class ScannedVersion(Result):
 class ScanResult(Result):
     """Result of a scan in numbers; written as `scan.json`."""
 
-    format: Literal[2] = 2
+    format: Literal[3] = 3
     question: ScanQuestion
     facts: ScanFacts
     ranking: Ranking
@@ -149,7 +150,8 @@ class ScanResult(Result):
     """Why no result follows from these trials."""
     failed: int
     """Trials in which the program raised an error."""
-    findings: tuple[str, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    """What was found in its trials."""
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:

@@ -10,7 +10,7 @@ from faultpath.loop import Plant
 from faultpath.run.attempt import Done
 from faultpath.run.check.blocks import RecordedBlock
 from faultpath.run.check.seen import Check, Seen
-from faultpath.run.execution.recheck import difference
+from faultpath.run.execution.recheck import deviation
 from faultpath.system.loop_system import LoopSystem
 
 HELD, MOVED = "held", "moved"
@@ -45,7 +45,7 @@ def unanswered(seen: Seen) -> Iterator[tuple[str, tuple[str, str]]]:
             for outcome in run.outcomes
         )
         alike = all(clean.get(key, value) == value for key, value in run.readings(dt_s).items())
-        if alike and not (ends and difference(first.outcomes, Done(ends, ()))):
+        if alike and not (ends and deviation(first.outcomes, Done(ends, ()))):
             yield variant, tap
 
 

@@ -3,12 +3,14 @@
 import math
 from collections.abc import Callable, Sequence
 
+from faultpath.core.text import capital
 from faultpath.run.check.blocks import MISTAKES, TRIALS, coarsest, gap_of
 from faultpath.run.check.delivery import HELD, MOVED, delivery
 from faultpath.run.check.remarks import diverged, other_names, successes, without_room
 from faultpath.run.check.seen import UNDER, Check, Seen
 from faultpath.run.deliveries import unproven, unread
-from faultpath.run.pairing import Group, Mismatch, mismatch_words, unlike
+from faultpath.run.findings import Unpaired
+from faultpath.run.pairing import unlike
 
 _SEVERAL = 10.0
 """A difference up to this multiple of what a last digit of the readings does may be rounding."""
@@ -145,21 +147,20 @@ def _pairing(name: str, seen: Seen) -> Check:
     if seen.unsteady():
         return Check(name=name, says="results do not repeat, so no two are a pair", judged=False)
     firsts = list(seen.firsts())
-    groups = [(Group(variant, "correct inputs"), run) for variant, run in firsts]
+    groups = [((variant, "correct inputs"), run) for variant, run in firsts]
     faulted = ((variant, seen.of(variant, "faulted")) for variant, _ in firsts)
-    groups += [(Group(variant, "a fault"), run) for variant, run in faulted if run.outcomes]
+    groups += [((variant, "a fault"), run) for variant, run in faulted if run.outcomes]
     (one, base), *others = groups
-    mismatches = [
-        Mismatch(one, two, a.scene, seen.seed, causes)
+    unpaired = [
+        Unpaired(first=one, second=two, scene=a.scene, seed=seen.seed, differences=causes)
         for two, run in others
         for a, b in zip(base.outcomes, run.outcomes, strict=True)
         if (causes := unlike(a, b))
     ]
     remedy = "draw what a scene meets by scene and seed, whatever the variant and the fault."
-    failures = [
-        f"{text[0].upper()}{text[1:].rstrip('.')}; {remedy}" for text in mismatch_words(mismatches)
-    ]
-    failures += unproven(o.met for _, run in firsts for o in run.outcomes if not o.failed)
+    failures = [f"{capital(str(found)).rstrip('.')}; {remedy}" for found in Unpaired.of(unpaired)]
+    met = (o.met for _, run in firsts for o in run.outcomes if not o.failed)
+    failures += map(str, unproven(met))
     says = f"in {len(groups)} runs of a scene"
     if not failures:
         says = f"the same initial states, disturbances and planner noise {says}"
@@ -168,7 +169,8 @@ def _pairing(name: str, seen: Seen) -> Check:
 
 def _reads(name: str, seen: Seen) -> Check:
     """Check that what is declared to be read is read."""
-    failures = tuple(unread((v, count) for v, run in seen.firsts() for count in run.counts))
+    counts = ((variant, count) for variant, run in seen.firsts() for count in run.counts)
+    failures = tuple(map(str, unread(counts)))
     taps = sum(len({read.tap for read in run.reads}) for _, run in seen.firsts())
     remarks = other_names(seen.system, [variant for variant, _ in seen.firsts()])
     says = f"{taps} injection points declared and read"

@@ -7,7 +7,7 @@ from typing import Literal
 from faultpath.core.results import Result
 from faultpath.run.attempt import Done
 from faultpath.run.check.blocks import RecordedBlock
-from faultpath.run.execution.recheck import difference
+from faultpath.run.execution.recheck import deviation
 from faultpath.system.declared import Variant
 from faultpath.system.system import System
 
@@ -83,7 +83,7 @@ class Seen:
         odd = [key for key, digest in again.readings(dt_s).items() if then.get(key) != digest]
         by_scene = {outcome.scene: outcome for outcome in first.outcomes}
         before = [by_scene[outcome.scene] for outcome in again.outcomes]
-        words = difference(before, Done(again.outcomes, ()))
+        words = str(deviation(before, Done(again.outcomes, ())) or "")
         if odd:
             scene, step, channel, reader = min(odd, key=lambda key: key[1])
             words = words or "differs in its readings alone"

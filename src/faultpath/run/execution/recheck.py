@@ -6,7 +6,7 @@ itself, with guarded readings.
 
 import hashlib
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any, Literal
@@ -19,7 +19,7 @@ from faultpath.core.results import Frozen
 from faultpath.loop import WrittenTo
 from faultpath.run.attempt import Died, Done, Reply, Wrong
 from faultpath.run.execution.schedule import Task, Unit
-from faultpath.run.provenance import Recheck
+from faultpath.run.findings import Deviation, Recheck
 from faultpath.run.store.folder import RunFolder
 from faultpath.system.outcome import Outcome
 
@@ -28,29 +28,31 @@ SAMPLE = 4
 _TRAJECTORY = "trajectory_hash"
 
 
-def difference(first: Sequence[Outcome], reply: Reply) -> str:
-    """Say how a second run of the same scenes differs; empty where it is the same to the bit.
+def deviation(first: Sequence[Outcome], reply: Reply) -> Deviation | None:
+    """Return how a second run of the same scenes differs; `None` where it is the same to the bit.
 
     Trajectories count where both runs have a hash of them.
     """
+    scenes, of = tuple(outcome.scene for outcome in first), len(first)
     if isinstance(reply, Died):
-        return f"could not be run again ({reply.how}), which differs"
+        return Deviation(died=reply.how, scenes=scenes, of=of)
     if not isinstance(reply, Done):
-        return f"failed the second time ({reply.error}), which differs"
+        return Deviation(raised=str(reply.error), scenes=scenes, of=of)
     differences = _gaps(first, reply)
     if not differences:
-        return ""
-    ends = sum("status" in gaps for gaps in differences.values())
-    parts = [f"{ends} end otherwise" if ends else "none ends otherwise"]
-    for name in dict.fromkeys(
-        name for gaps in differences.values() for name in gaps if name != "status"
-    ):
-        most = max(gaps.get(name, 0.0) for gaps in differences.values())
-        label = "what readers got" if name == _TRAJECTORY else name
-        parts.append(f"{label} by up to {most:.3g}" if math.isfinite(most) else f"{label} too")
-    summary = ", ".join(parts)
-    scene = next(iter(differences))
-    return f"differs in {len(differences)} of {len(first)}, {scene!r} for one ({summary})"
+        return None
+    names = dict.fromkeys(name for gaps in differences.values() for name in gaps)
+    most = {
+        name: max(gaps.get(name, 0.0) for gaps in differences.values())
+        for name in names
+        if name != "status"
+    }
+    return Deviation(
+        scenes=tuple(differences),
+        of=of,
+        ended=sum("status" in gaps for gaps in differences.values()),
+        gaps=tuple((name, gap if math.isfinite(gap) else None) for name, gap in most.items()),
+    )
 
 
 def _gaps(first: Sequence[Outcome], again: Done) -> dict[str, dict[str, float]]:
@@ -142,11 +144,9 @@ class Rechecks:
             replace(self._outcomes[task.unit.treatment_key, scene], trajectory_hash="")
             for scene in task.scenes
         ]
-        wrote, other = "", task.scenes
+        wrote = ""
         if isinstance(reply, Wrong) and isinstance(reply.error, WrittenTo):
-            wrote, other = str(reply.error), ()
-        elif isinstance(reply, Done):
-            other = tuple(_gaps(first, reply))
+            wrote = str(reply.error)
         self._kept[task.unit.key, task.recheck, task.scenes] = Recheck(
             why=task.recheck,
             unit=task.unit.key,
@@ -156,8 +156,7 @@ class Rechecks:
             scenes=task.scenes,
             unit_scenes=len(task.unit.scenes),
             wrote=wrote,
-            differs="" if wrote else difference(first, reply),
-            other=other,
+            deviation=None if wrote else deviation(first, reply),
         )
         kept = _Kept(rechecks=tuple(recheck for _, recheck in sorted(self._kept.items())))
         self._folder.save_rechecks(f"{kept.model_dump_json(indent=1)}\n")
@@ -167,29 +166,9 @@ class Rechecks:
         keys = {unit.key for unit in self._units}
         return tuple(shown for _, shown in sorted(self._kept.items()) if shown.unit in keys)
 
-    def findings(self) -> Iterator[str]:
-        """Yield what second runs of this run's units found; nothing where all were the same."""
-        for shown in self.of_this_run():
-            where = f"'{shown.variant}' under {shown.faults}, seed {shown.seed}"
-            if shown.wrote:
-                yield (
-                    f"A module writes into its reading, seen with {where}: {shown.wrote}. "
-                    "Without a fault that changes what others read, and with one it does not."
-                )
-            elif shown.differs:
-                count = len(shown.scenes)
-                how = (
-                    "alone, with a copy of every reading for each module"
-                    if shown.why == "guarded"
-                    else f"without the others of its {shown.unit_scenes}"
-                )
-                yield (
-                    f"Results do not repeat: {count} scene{'s' * (count != 1)} of {where}, run "
-                    f"again {how}, {shown.differs}. Effects may be chance: look for random numbers "
-                    "that are not of faultpath.generator, for threads, for what scenes of one call "
-                    "of run() share or one call leaves for the next, and for what is written into "
-                    "an array after it was delivered."
-                )
+    def findings(self) -> tuple[Recheck, ...]:
+        """Return those of this run's units in which something was found."""
+        return tuple(shown for shown in self.of_this_run() if shown.wrote or shown.deviation)
 
 
 def _hash_order(*parts: str) -> str:

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from faultpath.core.errors import UserError
 from faultpath.run.attempt import Done, Reply, Wrong
-from faultpath.run.execution.recheck import difference
+from faultpath.run.execution.recheck import deviation
 from faultpath.run.execution.schedule import Task, Unit
 from faultpath.run.store.folder import RunFolder
 
@@ -32,7 +32,7 @@ def repeat(
         if isinstance(reply, Wrong):
             raise reply.error
         treatment = task.unit.treatment
-        if differs := difference(blocks[task.unit.key].outcomes, reply):
+        if differs := deviation(blocks[task.unit.key].outcomes, reply):
             faults = (
                 " and ".join(fault.describe() for fault in treatment.faults) or "correct inputs"
             )

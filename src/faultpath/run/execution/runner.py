@@ -17,8 +17,8 @@ from faultpath.run.execution.recheck import Rechecks
 from faultpath.run.execution.repeating import repeat
 from faultpath.run.execution.schedule import Task, TaskQueue, Unit, units_of
 from faultpath.run.execution.state import RunState, Stop
+from faultpath.run.findings import Finding, Recheck
 from faultpath.run.plan import Plan, Treatment, check_rows, selected
-from faultpath.run.provenance import Recheck
 from faultpath.run.registry import load_system
 from faultpath.run.store.folder import RunFolder
 from faultpath.run.store.manifest import Manifest
@@ -62,7 +62,7 @@ class RunResult:
     """Trials that ran a second time, to see whether results repeat."""
 
     @property
-    def findings(self) -> tuple[str, ...]:
+    def findings(self) -> tuple[Finding, ...]:
         """Findings that a reader has to know: results that do not repeat, readers that
         never read or that write, hashes that prove nothing."""
         return self.deliveries.findings
@@ -143,7 +143,7 @@ def run_plan(
                     waiting = iter(again.tasks())
                     work(lambda worker: next(waiting, None), again.handle_reply)
                 trials, findings = state.trials(), (*state.findings(), *again.findings())
-                repeats = not any(recheck.differs for recheck in again.of_this_run())
+                repeats = not any(recheck.deviation for recheck in again.of_this_run())
                 deliveries = Deliveries.of(plan, state.taps(), trials, findings, repeats)
                 digest = run.save_tables(trials, deliveries)
     except KeyboardInterrupt:

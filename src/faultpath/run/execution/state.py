@@ -2,7 +2,7 @@
 
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 from faultpath.core.errors import UserError
@@ -11,6 +11,7 @@ from faultpath.loop import TapCount, added
 from faultpath.run.attempt import Died, Done, Raised, Reply, Wrong
 from faultpath.run.deliveries import TreatmentPart
 from faultpath.run.execution.schedule import Task, Unit
+from faultpath.run.findings import RaisedTogether
 from faultpath.run.plan import Plan, selected
 from faultpath.run.store.folder import RunFolder
 from faultpath.run.trials import Trial, Trials
@@ -151,8 +152,9 @@ class RunState:
             self._enter(unit, shard)
         return ()
 
-    def findings(self) -> Iterator[str]:
-        """Yield what is wrong with the system though its trials ended: it takes one scene alone."""
+    def findings(self) -> tuple[RaisedTogether, ...]:
+        """Return what is wrong with the system though its trials ended: it takes one scene
+        alone."""
         units = self.units
         sound = [unit for unit in units if not any(o.failed for o in self._outcomes_of(unit))]
         errors = [
@@ -160,12 +162,9 @@ class RunState:
             for text in (self._folder.load_failure(unit.key) for unit in sound)
             if text.startswith(_WHOLE)
         ]
-        if errors:
-            yield (
-                f"{len(errors)} of {len(units)} blocks raised an error when their scenes ran "
-                f"together, and none when each ran alone: {errors[0]}. A reading holds a value for "
-                "each scene of its block: `faultpath check` says what to fix."
-            )
+        if not errors:
+            return ()
+        return (RaisedTogether(blocks=len(errors), of=len(units), error=errors[0]),)
 
     def _outcomes_of(self, unit: Unit) -> list[Outcome]:
         return [self.outcomes[unit.treatment_key, scene] for scene in unit.scenes]

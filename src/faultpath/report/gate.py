@@ -4,13 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-from faultpath.analyses.model import SHARED
-from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences import phrases
-from faultpath.analyses.sentences.phrases import NO_RESULT, in_short, places
-from faultpath.analyses.sentences.wording import capital, counted, sentence, where
+from faultpath.analyses.model import SHARED, AuditResult, where
 from faultpath.core.errors import UserError
-from faultpath.core.text import unknown
+from faultpath.core.text import capital, counted, unknown
+from faultpath.report.sentences import phrases
+from faultpath.report.sentences.phrases import NO_RESULT, in_short, places
+from faultpath.report.sentences.wording import sentence
 
 Ask = Literal["reversal", "repair-behind", "undecided", "void"]
 ASKS: tuple[Ask, ...] = get_args(Ask)
@@ -31,7 +30,7 @@ class Answer:
         return f"{'yes' if self.yes else 'no'}: {self.reason}"
 
 
-def found(record: DecisionRecord, what: str) -> Answer:
+def found(record: AuditResult, what: str) -> Answer:
     """Return whether a result holds what is named; `UserError` for what is none of `ASKS`.
 
     `reversal`: sharing the fault reverses the ranking. `repair-behind`: under some condition the
@@ -69,7 +68,7 @@ def found(record: DecisionRecord, what: str) -> Answer:
             raise UserError(f"a result cannot be asked for that: {unknown('name', what, ASKS)}.")
 
 
-def holds_when_shared(record: DecisionRecord) -> Answer:
+def holds_when_shared(record: AuditResult) -> Answer:
     """Return whether the repair is significantly ahead under the shared fault.
 
     Away from floor and ceiling, and not because the baseline's trials failed. `UserError` for a
@@ -82,7 +81,7 @@ def holds_when_shared(record: DecisionRecord) -> Answer:
     return Answer(effect is not None and effect.leads and effect.sign > 0, text)
 
 
-def broken(record: DecisionRecord, conditions: Sequence[str]) -> dict[str, Answer]:
+def broken(record: AuditResult, conditions: Sequence[str]) -> dict[str, Answer]:
     """Return which of the conditions to fail for are met: by name, each with its answer."""
     answers = {condition: found(record, condition) for condition in conditions}
     return {name: answer for name, answer in answers.items() if answer}

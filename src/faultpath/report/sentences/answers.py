@@ -5,19 +5,13 @@ Whoever reads nothing else reads these, so what qualifies a decision is said her
 
 from collections.abc import Iterator
 
-from faultpath.analyses.model import CORRECT, SHARED, AuditResult, Invalid
-from faultpath.analyses.sentences import phrases, shares
-from faultpath.analyses.sentences.headline import reversed_at
-from faultpath.analyses.sentences.phrases import margin, places
-from faultpath.analyses.sentences.wording import (
-    capital,
-    counted,
-    detectable,
-    series,
-    signed,
-    where,
-)
-from faultpath.analyses.tables import MISSING
+from faultpath.analyses.model import CORRECT, SHARED, AuditResult, Invalid, where
+from faultpath.core.text import capital, counted, series
+from faultpath.report.sentences import phrases, shares
+from faultpath.report.sentences.headline import reversed_at
+from faultpath.report.sentences.phrases import margin, places
+from faultpath.report.sentences.wording import detectable, signed
+from faultpath.report.tables import MISSING
 
 _WHY_NO_RESULT: dict[Invalid, str] = {
     "unrepeatable": "Trials that ran a second time came out otherwise, so every difference may be "

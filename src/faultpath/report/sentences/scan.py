@@ -5,9 +5,10 @@ from collections.abc import Iterator, Sequence
 
 from faultpath.analyses.effects import FLOOR_PERCENT
 from faultpath.analyses.scan.model import ScanError, ScannedPair, ScannedVersion, ScanResult
-from faultpath.analyses.sentences.phrases import NO_RESULT
-from faultpath.analyses.sentences.wording import MINUS, capital, counted, series, unit
+from faultpath.core.text import capital, counted, series
 from faultpath.faults import FaultText
+from faultpath.report.sentences.phrases import NO_RESULT
+from faultpath.report.sentences.wording import MINUS, unit
 from faultpath.stats.estimate import ALPHA
 
 HELPS = ALPHA / 2

@@ -6,13 +6,12 @@ from collections.abc import Sequence
 
 from faultpath.analyses.effects import Difference, Effect
 from faultpath.analyses.facts import ComparisonFacts
-from faultpath.analyses.model import AS_RUN, CORRECT, SHARED
+from faultpath.analyses.shares import first, last
+from faultpath.core.text import capital
 from faultpath.stats.estimate import BreakEven, Estimate
 
 MINUS = "−"
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_SLACK = 1e-6
-"""On a percentage that is a whole number but for rounding."""
 
 
 def signed(value: float, digits: int = 1) -> str:
@@ -77,16 +76,6 @@ def break_even(result: BreakEven) -> str:
     return pieces if result.p_star is None else f"{100.0 * result.p_star:.0f} {pieces}"
 
 
-def first(frequency: float) -> int:
-    """Return the first whole percentage at or above a frequency."""
-    return math.ceil(100.0 * frequency - _SLACK)
-
-
-def last(frequency: float) -> int:
-    """Return the last whole percentage at or below a frequency."""
-    return math.floor(100.0 * frequency + _SLACK)
-
-
 def percent(fraction: float) -> str:
     """Return a fraction as whole percent, without the sign."""
     return f"{100.0 * fraction:.0f}"
@@ -125,37 +114,9 @@ def unit(name: str) -> str:
 
 def sentence(words: str) -> str:
     """Return words with a capital letter in front and a full stop behind."""
-    return f"{words[:1].upper()}{words[1:].removesuffix('.')}."
+    return f"{capital(words).removesuffix('.')}."
 
 
 def seeds(values: tuple[int, ...]) -> str:
     """Return `seed 0` or `seeds 0, 1, 2`."""
     return f"seed{'s' if len(values) > 1 else ''} {', '.join(map(str, values))}"
-
-
-def counted(count: int, noun: str) -> str:
-    """Return `1 pair` or `2 pairs`."""
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
-
-
-def where(condition: str) -> str:
-    """Return a condition as part of a sentence."""
-    if condition == CORRECT:
-        return "under correct inputs"
-    if condition == AS_RUN:
-        return "in these results"
-    return (
-        "under the shared fault"
-        if condition == SHARED
-        else f"with the fault at the {condition} alone"
-    )
-
-
-def capital(words: str) -> str:
-    """Return words with a capital letter in front, whatever follows."""
-    return words[:1].upper() + words[1:]
-
-
-def series(items: Sequence[str]) -> str:
-    """Return `a`, `a and b` or `a, b and c`."""
-    return " and ".join(filter(None, (", ".join(items[:-1]), items[-1])))

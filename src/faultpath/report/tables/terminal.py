@@ -3,7 +3,7 @@
 from textwrap import fill
 from typing import TYPE_CHECKING
 
-from faultpath.analyses.tables.model import Entry, Table, Tone
+from faultpath.report.tables.model import Entry, Table, Tone
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

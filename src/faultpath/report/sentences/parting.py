@@ -1,9 +1,10 @@
 """Where two trials of a scene part, in words."""
 
 from faultpath.analyses.facts import ComparisonFacts
+from faultpath.analyses.model import where
 from faultpath.analyses.parting import Difference, Ended, Kind, Parting
-from faultpath.analyses.sentences.wording import MINUS, capital, ended, series, unit, where
-from faultpath.core.text import one_line
+from faultpath.core.text import capital, one_line, series
+from faultpath.report.sentences.wording import MINUS, ended, unit
 from faultpath.system.outcome import control_steps
 
 DIFFERS: dict[Kind, str] = {

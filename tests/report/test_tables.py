@@ -5,10 +5,10 @@ import io
 import pytest
 from rich.console import Console
 
-from faultpath.analyses.tables import Entry, Line, Table, line
-from faultpath.analyses.tables.html import html
-from faultpath.analyses.tables.markdown import block, grid
-from faultpath.analyses.tables.terminal import drawn
+from faultpath.report.tables import Entry, Line, Table, line
+from faultpath.report.tables.html import html
+from faultpath.report.tables.markdown import block, grid
+from faultpath.report.tables.terminal import drawn
 
 TABLE = Table(
     title="What came out",

@@ -4,14 +4,22 @@ from collections.abc import Iterator, Sequence
 
 from faultpath.analyses.map.lattice import SHARED
 from faultpath.analyses.map.model import Flip, MapFacts, MapPoint, MapResult
-from faultpath.analyses.sentences.phrases import NO_RESULT
-from faultpath.analyses.sentences.wording import MINUS, plain, series, signed
+from faultpath.core.text import series
+from faultpath.report.sentences.phrases import NO_RESULT
+from faultpath.report.sentences.wording import MINUS, plain, signed
 from faultpath.stats.contrast import MIN_SCENES
 
 
 def estimand(facts: MapFacts) -> str:
     """Return what everything speaks of."""
     return "new scenes like these" + (", for these trained models" if facts.trained else "")
+
+
+def size_label(facts: MapFacts, size: float) -> str:
+    """Return the size of an error: `+20 %`, or `+0.2 m`."""
+    if facts.relative:
+        return f"{100 * size:+.3g} %".replace("-", MINUS) if size else "0 %"
+    return f"{size:+.3g} {facts.unit}".replace("-", MINUS).removesuffix(" 1")
 
 
 def headline(record: MapResult) -> str:
@@ -77,8 +85,8 @@ def _distribution(record: MapResult) -> str:
     facts = record.facts
     text = "Errors are taken to be Gaussian"
     for module, mean, spread in zip(facts.modules, facts.means, facts.spreads, strict=True):
-        middle = f"mean {facts.size_label(mean)}, " if mean else ""
-        size = facts.size_label(spread).removeprefix("+")
+        middle = f"mean {size_label(facts, mean)}, " if mean else ""
+        size = size_label(facts, spread).removeprefix("+")
         text += f", at the {module} with {middle}standard deviation {size}"
     text += "."
     if record.joint.outside >= 0.005:
@@ -104,7 +112,7 @@ def _turned(record: MapResult) -> list[tuple[str, int, list[float]]]:
 
 
 def _sizes(facts: MapFacts, values: Sequence[float]) -> str:
-    return series([facts.size_label(size) for size in values])
+    return series([size_label(facts, size) for size in values])
 
 
 def _reversals(record: MapResult) -> Iterator[str]:
@@ -129,14 +137,14 @@ def _flipped(record: MapResult, flip: Flip) -> str:
         reach = "at every size run"
         if abs(flip.until) < facts.up_to:
             reach = (
-                f"at the sizes run up to {facts.size_label(flip.until)}" if flip.until else "at 0"
+                f"at the sizes run up to {size_label(facts, flip.until)}" if flip.until else "at 0"
             )
         clauses.append(f"{record.winner(flip.start)} is ahead {reach}")
     if flip.first is not None and flip.last is not None:
-        first = facts.size_label(flip.first)
+        first = size_label(facts, flip.first)
         reach = f"at the sizes run from {first} on"
         if abs(flip.last) < facts.up_to:
-            reach = f"at the sizes run from {first} to {facts.size_label(flip.last)}"
+            reach = f"at the sizes run from {first} to {size_label(facts, flip.last)}"
             reach = f"at {first}" if flip.first == flip.last else reach
         clauses.append(f"{record.winner(flip.turned)} is ahead {reach}")
     elif not flip.start or abs(flip.until or 0.0) < facts.up_to:
@@ -148,8 +156,9 @@ def _flipped(record: MapResult, flip: Flip) -> str:
 
 def at_point(record: MapResult, point: MapPoint) -> str:
     """Return a pair of errors and what was seen there, for the tip of a picture."""
-    sizes = zip(record.facts.modules, map(record.facts.size_label, point.errors), strict=True)
-    pair = ", ".join(f"{module} {size}" for module, size in sizes)
+    sizes = [size_label(record.facts, error) for error in point.errors]
+    named = zip(record.facts.modules, sizes, strict=True)
+    pair = ", ".join(f"{module} {size}" for module, size in named)
     decided = f"{record.winner(point.sign)} ahead" if point.sign else "not significant"
     interval = f"[{plain(point.low)}, {plain(point.high)}]"
     return f"{pair}: {signed(point.difference)} pp {interval}, {decided}"

@@ -3,12 +3,13 @@
 from collections.abc import Mapping, Sequence
 
 from faultpath.analyses.effects import Effect
-from faultpath.analyses.record import DecisionRecord
-from faultpath.analyses.sentences import phrases, wording
-from faultpath.analyses.sentences.phrases import adjusted, not_standing, only_alone
-from faultpath.analyses.sentences.wording import capital
-from faultpath.analyses.tables import MISSING, Entry, Line, Table, line
-from faultpath.analyses.tables.markdown import block
+from faultpath.analyses.model import AuditResult
+from faultpath.core.text import capital, counted
+from faultpath.report.sentences import phrases, wording
+from faultpath.report.sentences.headline import headline
+from faultpath.report.sentences.phrases import adjusted, not_standing, only_alone
+from faultpath.report.tables import MISSING, Entry, Line, Table, line
+from faultpath.report.tables.markdown import block
 from faultpath.stats.estimate import Estimate
 
 _VARIANTS = ("baseline", "repair")
@@ -32,7 +33,7 @@ _BETA = (
 )
 
 
-def _entries(record: DecisionRecord, effect: Effect) -> Mapping[str, Entry | str]:
+def _entries(record: AuditResult, effect: Effect) -> Mapping[str, Entry | str]:
     """Return all that a record says of a condition, by the name of the quantity."""
     break_evens = {b.condition: wording.break_even(b.result) for b in record.break_even}
     betas = {b.condition: wording.break_even(b.result) for b in record.break_even_beta}
@@ -59,7 +60,7 @@ def _entries(record: DecisionRecord, effect: Effect) -> Mapping[str, Entry | str
     }
 
 
-def _labels(record: DecisionRecord, names: Sequence[str]) -> dict[str, str]:
+def _labels(record: AuditResult, names: Sequence[str]) -> dict[str, str]:
     """Return the quantities of `names` that the record has, each with its label."""
     effects, question = record.effects, record.question
     labels = {
@@ -86,7 +87,7 @@ def _labels(record: DecisionRecord, names: Sequence[str]) -> dict[str, str]:
     return {name: labels[name] for name in names if there.get(name, True)}
 
 
-def decided_for(record: DecisionRecord, effect: Effect) -> Entry:
+def decided_for(record: AuditResult, effect: Effect) -> Entry:
     """Return the version that is significantly ahead, with what keeps it out of a headline; or the
     p-value for which the difference is not significant where the interval alone excludes 0."""
     if not effect.acted:
@@ -96,7 +97,7 @@ def decided_for(record: DecisionRecord, effect: Effect) -> Entry:
     return Entry(text=variant, aside=", ".join(filter(None, (effect.extreme, p))))
 
 
-def by_condition(record: DecisionRecord, names: Sequence[str], title: str = "") -> Table:
+def by_condition(record: AuditResult, names: Sequence[str], title: str = "") -> Table:
     """Return a table with a row for each condition and a column for each quantity in `names`."""
     labels, titles = _labels(record, names), _titles(record)
     lines = [
@@ -111,7 +112,7 @@ def by_condition(record: DecisionRecord, names: Sequence[str], title: str = "") 
     return Table(title=title, corner="Condition", columns=tuple(columns), lines=tuple(lines))
 
 
-def constant(record: DecisionRecord, names: Sequence[str]) -> dict[str, str]:
+def constant(record: AuditResult, names: Sequence[str]) -> dict[str, str]:
     """Return which of the quantities in `names` are the same under every condition, each with a
     sentence on it; none where there is nothing to say."""
     of = [_entries(record, effect) for effect in record.effects]
@@ -127,7 +128,7 @@ def constant(record: DecisionRecord, names: Sequence[str]) -> dict[str, str]:
 
 
 def by_quantity(
-    record: DecisionRecord, names: Sequence[str], title: str = "", notes: Sequence[str] = ()
+    record: AuditResult, names: Sequence[str], title: str = "", notes: Sequence[str] = ()
 ) -> Table:
     """Return a table with a column for each condition and a row for each quantity in `names`."""
     of = [_entries(record, effect) for effect in record.effects]
@@ -144,7 +145,7 @@ def by_quantity(
     )
 
 
-def whole_table(record: DecisionRecord) -> Table:
+def whole_table(record: AuditResult) -> Table:
     """Return every quantity of every condition, with the question as title: the table of a
     paper."""
     question, facts = record.question, record.facts
@@ -164,7 +165,7 @@ def whole_table(record: DecisionRecord) -> Table:
         corrected += f" Of {sets} break-even sets each is wrong in at most 5 % of audits, one or "
         corrected += "another of them in more."
     if record.stopped is not None:
-        contrasts = wording.counted(record.testing.hypotheses, "contrast")
+        contrasts = counted(record.testing.hypotheses, "contrast")
         others = "" if record.testing.hypotheses == 1 else ", half of it for the primary one"
         corrected = (
             f"The audit was sequential: intervals and p-values hold at whatever scene it stopped. "
@@ -180,7 +181,7 @@ def whole_table(record: DecisionRecord) -> Table:
         f"Primary contrast: {facts.primary}. {tests}{corrected} Intervals and tests speak of "
         f"{phrases.estimand(question, facts)}.",
         *not_standing(record),
-        record.headline,
+        headline(record),
     )
     table = by_quantity(record, ALL, title, notes)
     more = secondary(record)
@@ -188,13 +189,13 @@ def whole_table(record: DecisionRecord) -> Table:
     return table.model_copy(update={"lines": (*table.lines, *heading)})
 
 
-def markdown_table(record: DecisionRecord) -> str:
+def markdown_table(record: AuditResult) -> str:
     """Return the whole table as Markdown, with the question above it and the verdict below."""
     tables = (whole_table(record), by_threshold(record))
     return "\n\n".join(map(block, filter(None, tables)))
 
 
-def ended(record: DecisionRecord) -> Table:
+def ended(record: AuditResult) -> Table:
     """Return how the trials of both versions ended under each condition."""
     question = record.question
     statuses = ("success", "crash", "timeout", "failed")
@@ -217,7 +218,7 @@ def ended(record: DecisionRecord) -> Table:
     )
 
 
-def median_time(record: DecisionRecord) -> str:
+def median_time(record: AuditResult) -> str:
     """Say the median time of successes where all versions and conditions have the same."""
     times = {_median(count.median_time_s) for count in record.counts}
     same = len(record.counts) > 1 and len(times) == 1
@@ -232,7 +233,7 @@ def _median(time_s: float | None) -> str:
     return MISSING if time_s is None else wording.plain(time_s, 2)
 
 
-def secondary(record: DecisionRecord) -> Table | None:
+def secondary(record: AuditResult) -> Table | None:
     """Return time and metrics, repair minus baseline, by condition; `None` without any."""
     question = record.question
     shown = {"time on joint successes (s)": [of.time_s for of in record.secondary]}
@@ -254,7 +255,7 @@ def secondary(record: DecisionRecord) -> Table | None:
     )
 
 
-def by_threshold(record: DecisionRecord) -> Table | None:
+def by_threshold(record: AuditResult) -> Table | None:
     """Return the chosen metric and success at each threshold of it, condition by condition; `None`
     without.
 
@@ -293,6 +294,6 @@ def by_threshold(record: DecisionRecord) -> Table | None:
     )
 
 
-def _titles(record: DecisionRecord) -> tuple[str, ...]:
+def _titles(record: AuditResult) -> tuple[str, ...]:
     titles = {condition.name: condition.title for condition in record.conditions}
     return tuple(titles.get(effect.condition, effect.condition) for effect in record.effects)

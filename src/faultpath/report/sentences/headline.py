@@ -6,8 +6,9 @@ Names of modules and variants count as one word each.
 from collections.abc import Sequence
 
 from faultpath.analyses.effects import Effect
-from faultpath.analyses.model import CORRECT, SHARED, AuditResult
-from faultpath.analyses.sentences.phrases import (
+from faultpath.analyses.model import CORRECT, SHARED, AuditResult, where
+from faultpath.core.text import capital
+from faultpath.report.sentences.phrases import (
     NO_RESULT,
     failed_more,
     in_few_scenes,
@@ -15,7 +16,6 @@ from faultpath.analyses.sentences.phrases import (
     no_pair,
     places,
 )
-from faultpath.analyses.sentences.wording import capital, where
 
 
 def headline(record: AuditResult) -> str:

@@ -4,17 +4,9 @@ from collections.abc import Iterator, Sequence
 
 from faultpath.analyses.effects import Change, Effect
 from faultpath.analyses.facts import ComparisonFacts, Question
-from faultpath.analyses.model import CORRECT, SHARED, AuditResult, Invalid
-from faultpath.analyses.sentences.wording import (
-    capital,
-    counted,
-    interval,
-    p_value,
-    series,
-    signed,
-    where,
-    with_interval,
-)
+from faultpath.analyses.model import CORRECT, SHARED, AuditResult, Invalid, where
+from faultpath.core.text import capital, counted, series
+from faultpath.report.sentences.wording import interval, p_value, signed, with_interval
 from faultpath.stats.distributions import sign_p_value
 
 NO_RESULT: dict[Invalid, str] = {
@@ -246,37 +238,6 @@ def hardly_acted(record: AuditResult) -> Iterator[str]:
                 f"{capital(where(count.condition))}, the fault changed something in only "
                 f"{count.altered_trials} of {count.trials} trials of {count.variant}."
             )
-
-
-def partly_measured(record: AuditResult) -> Iterator[str]:
-    """Say of which metrics not every trial has a value."""
-    for effect, secondary in zip(record.effects, record.secondary, strict=True):
-        for name in record.facts.metrics:
-            whole = secondary.metrics[name].n_scenes if name in secondary.metrics else 0
-            if whole < effect.scenes and (whole or record.facts.judged):
-                scenes = f"{whole} of {counted(effect.scenes, 'scene')}"
-                yield (
-                    f"{capital(where(effect.condition))}, {name} is compared in {scenes}: only "
-                    "there does every trial have it."
-                )
-
-
-def failed_trials(record: AuditResult) -> Iterator[str]:
-    """Say by version and condition how many trials failed, and how far that could matter."""
-    question = record.question
-    for effect in record.effects:
-        missing = effect.missing
-        if missing is None or missing.against_pp is None or missing.favour_pp is None:
-            continue
-        if not (missing.repair or missing.baseline or missing.unsettled):
-            continue
-        lost = "failed or missing" if record.facts.judged else "failed"
-        yield (
-            f"{capital(where(effect.condition))}, {counted(missing.repair, 'trial')} of "
-            f"{question.repair} {lost}, {missing.baseline} of {question.baseline}: depending on "
-            "how they would have ended, the difference over all scenes lies anywhere from "
-            f"{signed(missing.against_pp)} to {signed(missing.favour_pp)} pp."
-        )
 
 
 def earlier_analyses(record: AuditResult) -> str:

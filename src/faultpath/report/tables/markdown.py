@@ -1,7 +1,7 @@
 """Tables as Markdown: the paper's figure stands in parentheses behind ours."""
 
-from faultpath.analyses.tables.escapes import markdown as escape
-from faultpath.analyses.tables.model import Entry, Table
+from faultpath.report.tables.escapes import markdown as escape
+from faultpath.report.tables.model import Entry, Table
 
 
 def block(table: Table) -> str:

@@ -1,7 +1,7 @@
 """Tables as HTML: the paper's figure stands small below ours."""
 
-from faultpath.analyses.tables.escapes import html as escape
-from faultpath.analyses.tables.model import Entry, Table
+from faultpath.report.tables.escapes import html as escape
+from faultpath.report.tables.model import Entry, Table
 
 
 def html(table: Table, style: str = "numbers", *, caption: bool = True) -> str:

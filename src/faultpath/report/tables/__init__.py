@@ -1,5 +1,5 @@
 """Tables of text, and how terminal, Markdown and HTML show them."""
 
-from faultpath.analyses.tables.model import MISSING, Entry, Line, Table, line
+from faultpath.report.tables.model import MISSING, Entry, Line, Table, line
 
 __all__ = ["MISSING", "Entry", "Line", "Table", "line"]

@@ -1,0 +1,140 @@
+"""What was found in the trials of a result, in words: a reader has to know it."""
+
+from collections.abc import Iterator
+
+from faultpath.analyses.model import AuditResult, where
+from faultpath.core.text import capital, counted
+from faultpath.report.sentences import phrases
+from faultpath.report.sentences.wording import signed
+from faultpath.run.findings import (
+    ExtraTrials,
+    Finding,
+    MissingTrials,
+    NoneFailed,
+    RaisedTogether,
+    Recheck,
+    SeveralTasks,
+    Unpaired,
+    Unproven,
+    Unread,
+    Unrecorded,
+    Unrepeated,
+)
+
+
+def of_audit(record: AuditResult) -> tuple[str, ...]:
+    """Return all that was found: what is missing, what else was found, and earlier analyses."""
+    return (
+        *_without_pairs(record),
+        *_failed_trials(record),
+        *_partly_measured(record),
+        *map(said, record.findings),
+        *([phrases.earlier_analyses(record)] if record.earlier else ()),
+    )
+
+
+def said(finding: Finding) -> str:
+    """Return a finding as a sentence or two."""
+    match finding:
+        case Unpaired() | Unproven() | Unread():
+            return str(finding)  # as `faultpath check` says it
+        case Recheck():
+            return _recheck(finding)
+        case RaisedTogether():
+            return (
+                f"{finding.blocks} of {finding.of} blocks raised an error when their scenes ran "
+                f"together, and none when each ran alone: {finding.error}. A reading holds a value "
+                "for each scene of its block: `faultpath check` says what to fix."
+            )
+        case Unrecorded():
+            return f"No signals were recorded: {finding.error}"
+        case Unrepeated():
+            return (
+                f"Signals of {finding.trials} of {counted(finding.of, 'trial')} were not recorded: "
+                f"run again, it came out otherwise: {finding.variant}, {finding.condition}, "
+                f"{finding.scene}: {finding.deviation}."
+            )
+        case MissingTrials():
+            seed = "seed " if finding.unit == "scene" else ""
+            which = f" ({seed}{finding.trial})" if finding.trial else ""
+            return (
+                f"{capital(where(finding.condition))}, {counted(finding.trials, 'trial')} of "
+                f"{finding.variant} {'is' if finding.trials == 1 else 'are'} missing, for example "
+                f"that in {finding.first}{which}: each voids its pair."
+            )
+        case ExtraTrials():
+            return (
+                f"{counted(finding.units, finding.unit)} {'has' if finding.units == 1 else 'have'} "
+                f"more trials than the others, for example {finding.first}: the extra trials are "
+                "left out."
+            )
+        case SeveralTasks():
+            return (
+                f"The scenes come from {finding.tasks} tasks and are taken as independent: what is "
+                "significant need not hold for new tasks. --cluster task tests whether it does."
+            )
+        case NoneFailed():
+            return (
+                "No trial ended without success, and some say nothing: where `failed` or an empty "
+                "cell means no success, write 0."
+            )
+
+
+def _recheck(finding: Recheck) -> str:
+    trials = f"'{finding.variant}' under {finding.faults}, seed {finding.seed}"
+    if finding.wrote:
+        return (
+            f"A module writes into its reading, seen with {trials}: {finding.wrote}. "
+            "Without a fault that changes what others read, and with one it does not."
+        )
+    how = (
+        "alone, with a copy of every reading for each module"
+        if finding.why == "guarded"
+        else f"without the others of its {finding.unit_scenes}"
+    )
+    return (
+        f"Results do not repeat: {counted(len(finding.scenes), 'scene')} of {trials}, run again "
+        f"{how}, {finding.deviation}. Effects may be chance: look for random numbers that are not "
+        "of faultpath.generator, for threads, for what scenes of one call of run() share or one "
+        "call leaves for the next, and for what is written into an array after it was delivered."
+    )
+
+
+def _without_pairs(record: AuditResult) -> Iterator[str]:
+    compared = {effect.condition for effect in record.effects}
+    for condition in record.conditions:
+        if condition.name not in compared:
+            yield f"{phrases.no_pair(condition.name)}: the table shows what failed."
+
+
+def _failed_trials(record: AuditResult) -> Iterator[str]:
+    """Say by version and condition how many trials failed, and how far that could matter."""
+    question = record.question
+    for effect in record.effects:
+        missing = effect.missing
+        if missing is None or missing.against_pp is None or missing.favour_pp is None:
+            continue
+        if not (missing.repair or missing.baseline or missing.unsettled):
+            continue
+        lost = "failed or missing" if record.facts.judged else "failed"
+        yield (
+            f"{capital(where(effect.condition))}, {counted(missing.repair, 'trial')} of "
+            f"{question.repair} {lost}, {missing.baseline} of {question.baseline}: depending on "
+            "how they would have ended, the difference over all scenes lies anywhere from "
+            f"{signed(missing.against_pp)} to {signed(missing.favour_pp)} pp."
+        )
+
+
+def _partly_measured(record: AuditResult) -> Iterator[str]:
+    """Say of which metrics not every trial has a value."""
+    by_condition = {secondary.condition: secondary for secondary in record.secondary}
+    for effect in record.effects:
+        secondary = by_condition[effect.condition]
+        for name in record.facts.metrics:
+            whole = secondary.metrics[name].n_scenes if name in secondary.metrics else 0
+            if whole < effect.scenes and (whole or record.facts.judged):
+                scenes = f"{whole} of {counted(effect.scenes, 'scene')}"
+                yield (
+                    f"{capital(where(effect.condition))}, {name} is compared in {scenes}: only "
+                    "there does every trial have it."
+                )

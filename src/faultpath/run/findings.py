@@ -1,0 +1,221 @@
+"""What was found in the trials of a run that a reader of its results has to know, as data.
+
+`faultpath.report.sentences.findings` says them. The few kinds that `faultpath check` and errors of
+a run name too have their words here, as `str`.
+"""
+
+from collections.abc import Sequence
+from typing import Annotated, Literal, TypeAlias
+
+from pydantic import Field
+
+from faultpath.core.results import Result
+from faultpath.core.text import counted
+
+HASHED = {
+    "initial_hash": "initial states",
+    "disturbance_hash": "disturbances",
+    "planner_noise_hash": "planner noise",
+}
+"""What each hash of a trial's conditions is of."""
+Unit: TypeAlias = Literal["scene", "task"]
+"""What counts as one in results of other tools: a scene, or a task with all of its scenes."""
+
+
+class Deviation(Result):
+    """Differences of a second run of some scenes from the first."""
+
+    died: str = ""
+    """How its worker ended; then no outcomes could be compared."""
+    raised: str = ""
+    """Error that it raised; likewise."""
+    scenes: tuple[str, ...]
+    """Those that came out otherwise."""
+    of: int
+    """Scenes that ran again."""
+    ended: int = 0
+    """Scenes that ended in another status."""
+    gaps: tuple[tuple[str, float | None], ...] = ()
+    """Each part of an outcome that differs, with the largest difference; `None` where it is no
+    number."""
+
+    def __str__(self) -> str:
+        """Return the difference as the end of a sentence."""
+        if self.died:
+            return f"could not be run again ({self.died}), which differs"
+        if self.raised:
+            return f"failed the second time ({self.raised}), which differs"
+        parts = [f"{self.ended} end otherwise" if self.ended else "none ends otherwise"]
+        for name, gap in self.gaps:
+            label = "what readers got" if name == "trajectory_hash" else name
+            parts.append(f"{label} too" if gap is None else f"{label} by up to {gap:.3g}")
+        count = f"{len(self.scenes)} of {self.of}"
+        return f"differs in {count}, {self.scenes[0]!r} for one ({', '.join(parts)})"
+
+
+class Recheck(Result):
+    """Scenes of a finished unit that ran a second time, and what that showed."""
+
+    kind: Literal["recheck"] = "recheck"
+    why: Literal["sample", "guarded"]
+    """A few scenes of the unit by themselves, or one alone with guarded readings."""
+    unit: str
+    """Key of the unit, which its shard is named after."""
+    variant: str
+    faults: str
+    """In words."""
+    seed: int
+    scenes: tuple[str, ...]
+    unit_scenes: int
+    """How many scenes the unit has in all."""
+    deviation: Deviation | None = None
+    """From the outcomes of the run; `None` where they are the same to the bit."""
+    wrote: str = ""
+    """The reader that wrote into its reading, where the guard saw one."""
+
+
+class Unpaired(Result):
+    """Two trials of a scene that met different conditions and are no pair."""
+
+    kind: Literal["unpaired"] = "unpaired"
+    first: tuple[str, str]
+    """Variant and condition."""
+    second: tuple[str, str]
+    scene: str
+    seed: int
+    differences: tuple[tuple[str, str, str], ...]
+    """The name of each hash that differs, and both of its values."""
+    others: int = 0
+    """Further pairs that are none, for the same reason."""
+
+    @classmethod
+    def of(cls, every: Sequence["Unpaired"]) -> tuple["Unpaired", ...]:
+        """Return one finding that counts all and shows the first; nothing without any."""
+        return tuple(one.model_copy(update={"others": len(every) - 1}) for one in every[:1])
+
+    def __str__(self) -> str:
+        """Return a sentence that counts the pairs and shows the first."""
+        one, two = (f"{variant} under {under}" for variant, under in (self.first, self.second))
+        hashes = "; ".join(f"{name} {a[:8]!r} and {b[:8]!r}" for name, a, b in self.differences)
+        what = " and ".join(HASHED[name] for name, _, _ in self.differences)
+        others = f"; so do those of {counted(self.others, 'other pair')}" if self.others else ""
+        return (
+            f"{one} and {two} are no pair in scene {self.scene!r} (seed {self.seed}): their {what} "
+            f"differ ({hashes}){others}."
+        )
+
+
+class Unproven(Result):
+    """All scenes carry the same hashes, which so prove nothing about the pairs."""
+
+    kind: Literal["unproven"] = "unproven"
+    scenes: int
+    hashes: tuple[str, ...]
+
+    def __str__(self) -> str:
+        """Return what is wrong, and what to do."""
+        return (
+            f"All {self.scenes} scenes carry the same hashes of initial state, disturbance and "
+            f"planner noise ({', '.join(map(repr, self.hashes))}), so nothing proves that two "
+            "trials met the same conditions: hash what each scene begins with and meets."
+        )
+
+
+class Unread(Result):
+    """A reader that a variant declares, and that never read."""
+
+    kind: Literal["unread"] = "unread"
+    variant: str
+    channel: str
+    reader: str
+
+    def __str__(self) -> str:
+        """Return what is wrong, and what to do."""
+        return (
+            f"Variant '{self.variant}' declares that {self.reader} reads '{self.channel}', but it "
+            "never did: take it out of the variant's readers, or deliver the channel to it."
+        )
+
+
+class RaisedTogether(Result):
+    """Blocks that raised an error when their scenes ran together, and none when each ran alone."""
+
+    kind: Literal["raised-together"] = "raised-together"
+    blocks: int
+    of: int
+    """Blocks of the run."""
+    error: str
+    """Of the first."""
+
+
+class Unrecorded(Result):
+    """Trials that could not run again for their signals."""
+
+    kind: Literal["unrecorded"] = "unrecorded"
+    error: str
+
+
+class Unrepeated(Result):
+    """Trials that came out otherwise when their signals were recorded."""
+
+    kind: Literal["unrepeated"] = "unrepeated"
+    trials: int
+    of: int
+    """Trials that ran again."""
+    variant: str
+    """Of the first, as all that follows."""
+    condition: str
+    scene: str
+    deviation: Deviation
+
+
+class MissingTrials(Result):
+    """Trials that one version has and the other lacks, in results of other tools."""
+
+    kind: Literal["missing-trials"] = "missing-trials"
+    variant: str
+    condition: str
+    trials: int
+    unit: Unit
+    first: str
+    """Scene or task of the first."""
+    trial: str
+    """Its seed in a scene, or what tells it apart in a task; empty where nothing does."""
+
+
+class ExtraTrials(Result):
+    """Scenes or tasks with more trials than the others; these are left out."""
+
+    kind: Literal["extra-trials"] = "extra-trials"
+    units: int
+    unit: Unit
+    first: str
+
+
+class SeveralTasks(Result):
+    """Scenes that count as independent, though they come from several tasks."""
+
+    kind: Literal["several-tasks"] = "several-tasks"
+    tasks: int
+
+
+class NoneFailed(Result):
+    """Results in which every trial has a success or no outcome at all."""
+
+    kind: Literal["none-without-success"] = "none-without-success"
+
+
+Finding: TypeAlias = Annotated[
+    Recheck
+    | Unpaired
+    | Unproven
+    | Unread
+    | RaisedTogether
+    | Unrecorded
+    | Unrepeated
+    | MissingTrials
+    | ExtraTrials
+    | SeveralTasks
+    | NoneFailed,
+    Field(discriminator="kind"),
+]
