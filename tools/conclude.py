@@ -22,9 +22,10 @@ from faultpath.analyses.scan.model import ScanResult
 from faultpath.api.folders import MAP, RECORD, SCAN, as_text
 from faultpath.api.replaying import shown_first
 from faultpath.api.runs import open_run
-from faultpath.report.map import table_markdown
+from faultpath.report.map import tables
 from faultpath.report.sentences.words import words
 from faultpath.report.tables import Table
+from faultpath.report.tables.markdown import blocks
 from faultpath.run import Deliveries, SystemSpec, Trials, load_system
 from faultpath.run.provenance import RunProvenance
 from faultpath.run.store.folder import OUTCOMES, TRACES, read_outcomes, seal
@@ -86,7 +87,7 @@ def reversal_map(folder: Path) -> MapResult:
     plan = replace(plan, facts=facts)
     record = plan.conclude(read_outcomes(folder / OUTCOMES), findings, points)
     (folder / MAP).write_text(record.model_dump_json(indent=1) + "\n", "utf-8")
-    (folder / "table.md").write_text(table_markdown(record), "utf-8")
+    (folder / "table.md").write_text(blocks(tables(record)) + "\n", "utf-8")
     _reseal(folder)
     load.cache_clear()
     return record

@@ -174,27 +174,3 @@ class AuditResult(Result):
     def is_small(self, effect: Effect) -> bool:
         """Whether an effect was shown to be smaller than the margin of a sequential audit."""
         return self.stopped is not None and effect.condition in self.stopped.small
-
-    @property
-    def scenes_run(self) -> str:
-        """The number of scenes, and of how many where an audit could have taken more."""
-        most = str(self.facts.n_scenes)
-        if self.stopped is None or self.stopped.scenes == self.facts.n_scenes:
-            return most
-        return f"{self.stopped.scenes} of at most {most}"
-
-    @property
-    def stopping(self) -> str:
-        """How a sequential audit was to stop."""
-        order, margin_pp = self.facts.order, self.question.margin_pp
-        if order is None:
-            return ""
-        every = self.question.stop_when == "all-decided"
-        what = "every effect" if every else "the primary contrast"
-        small = f" or shown to be smaller than {margin_pp:g} pp" if margin_pp else ""
-        return (
-            f"the audit was to stop once {what} is significant{small}, at a look after every "
-            f"{'scene' if order.per_analysis == 1 else f'{order.per_analysis} scenes'}, or after "
-            f"{self.facts.n_scenes}; the order of its scenes was drawn beforehand from the hash "
-            f"of the library and the seed {order.seed}"
-        )

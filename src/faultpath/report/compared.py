@@ -10,7 +10,6 @@ from pathlib import Path
 
 from faultpath.analyses.contrasts import effect_name
 from faultpath.analyses.effects import Effect
-from faultpath.analyses.facts import ComparisonFacts, Question
 from faultpath.analyses.model import CORRECT, SHARED, AuditResult
 from faultpath.analyses.sweep import decide_sizes
 from faultpath.report.inputs import ReportInput
@@ -48,16 +47,6 @@ class Compared:
         """Conditions under which it was made."""
         return self.source.provenance
 
-    @property
-    def question(self) -> Question:
-        """Question of the audit."""
-        return self.record.question
-
-    @property
-    def facts(self) -> ComparisonFacts:
-        """What its system told."""
-        return self.record.facts
-
     def effect(self, condition: str) -> Effect | None:
         """Return its effect under a condition, as decided beside the others; `None` where it has
         none."""
@@ -77,6 +66,11 @@ class Compared:
             e.sign and not family.get(e.condition, (e.sign, 0))[0] for e in self.record.effects
         )
         return f"By itself, and not over all sizes: {own}" if fallen else own
+
+    @property
+    def scenes_run(self) -> str:
+        """The number of scenes, and of how many where it could have taken more."""
+        return phrases.scenes_run(self.record)
 
     @property
     def findings(self) -> tuple[str, ...]:
@@ -101,7 +95,7 @@ def titles(runs: Sequence[Compared]) -> dict[str, str]:
         for condition in run.record.conditions
     }
     order = {condition.name: None for run in runs for condition in run.record.conditions}
-    primaries = {run.facts.primary for run in runs}
+    primaries = {run.record.facts.primary for run in runs}
     return {
         condition: f"{by_condition[condition]} (primary)"
         if primaries == {condition}
@@ -124,19 +118,21 @@ def _side_by_side(columns: Sequence[Mapping[str, str]], absent: str) -> dict[str
 def _question(runs: Sequence[Compared]) -> dict[str, tuple[str, ...]]:
     facts = [
         {
-            "Fault": str(run.question.fault),
-            "Baseline": run.question.baseline,
-            "Repair": run.question.repair,
-            "System": run.facts.system,
-            "Library": run.facts.library,
-            "State of the library": run.facts.library_hash[:_DIGITS],
-            "Scenes run": run.record.scenes_run,
+            "Fault": str(run.record.question.fault),
+            "Baseline": run.record.question.baseline,
+            "Repair": run.record.question.repair,
+            "System": run.record.facts.system,
+            "Library": run.record.facts.library,
+            "State of the library": run.record.facts.library_hash[:_DIGITS],
+            "Scenes run": phrases.scenes_run(run.record),
             "Scenes compared": str(run.record.scenes),
-            "Seeds": ", ".join(map(str, run.facts.seeds)),
-            "Primary contrast": run.facts.primary,
-            "Intervals and tests hold for": phrases.estimand(run.question, run.facts),
-            "Stopping": wording.sentence(run.record.stopping or "all scenes were run"),
-            **{f"Option {key}": value for key, value in sorted(run.question.options.items())},
+            "Seeds": ", ".join(map(str, run.record.facts.seeds)),
+            "Primary contrast": run.record.facts.primary,
+            "Intervals and tests hold for": phrases.estimand(run.record.question, run.record.facts),
+            "Stopping": wording.sentence(phrases.stopping(run.record) or "all scenes were run"),
+            **{
+                f"Option {key}": value for key, value in sorted(run.record.question.options.items())
+            },
         }
         for run in runs
     ]
@@ -172,7 +168,7 @@ def labels(runs: Sequence[Compared]) -> tuple[str, ...]:
 def swept(runs: Sequence[Compared]) -> tuple[str, tuple[float, ...]] | None:
     """Return the fault in whose size alone the questions differ, with the size in each run;
     `None` where they differ in something else."""
-    parts = [_SIZED.fullmatch(str(run.question.fault)) for run in runs]
+    parts = [_SIZED.fullmatch(str(run.record.question.fault)) for run in runs]
     groups = [part.groups() for part in parts if part]
     if len(runs) < 2 or len(groups) < len(runs) or len({(a, c) for a, _, c in groups}) > 1:
         return None

@@ -37,7 +37,7 @@ def headline(runs: Sequence[Compared]) -> str:
     """Return what all sizes of a sweep answer under the primary condition; of other runs how many
     there are, and where they are decided in opposite directions."""
     if sweep := swept(runs):
-        primary = next((p for p in titles(runs) if p == runs[0].facts.primary), SHARED)
+        primary = next((p for p in titles(runs) if p == runs[0].record.facts.primary), SHARED)
         answer = _by_size(runs, primary, sweep[1])
         return f"{len(runs)} sizes of {sweep[0]}, {where(primary)}: {answer}"
     opposed = [
@@ -72,7 +72,7 @@ def sentences(runs: Sequence[Compared]) -> tuple[str, ...]:
     conclusions = conclusions or [
         "No two audits of the same versions are significant in opposite directions."
     ]
-    if len({run.facts.system for run in runs}) > 1:
+    if len({run.record.facts.system for run in runs}) > 1:
         conclusions += [
             "The runs are of different systems: the same name need not mean the same thing."
         ]
@@ -103,7 +103,10 @@ def _by_size(runs: Sequence[Compared], condition: str, sizes: Sequence[float]) -
     at: dict[str, list[str]] = {}
     for run, size in sorted(zip(runs, sizes, strict=True), key=lambda pair: pair[1]):
         sign = effect.sign if (effect := run.effect(condition)) else 0
-        ahead = {1: f"{run.question.repair} ahead", -1: f"{run.question.baseline} ahead"}
+        ahead = {
+            1: f"{run.record.question.repair} ahead",
+            -1: f"{run.record.question.baseline} ahead",
+        }
         at.setdefault(ahead.get(sign, "nothing significant"), []).append(tick_label(size))
     if len(at) == 1:
         (words,) = at
@@ -122,7 +125,7 @@ def _opposite(runs: Sequence[Compared], condition: str) -> Iterator[str]:
             if _variants(run) != variants:
                 continue
             role = "repair" if effect.sign > 0 else "baseline"
-            winner = run.question.repair if effect.sign > 0 else run.question.baseline
+            winner = run.record.question.repair if effect.sign > 0 else run.record.question.baseline
             aside = wording.reservation(effect)
             text = f"{run.number} (at the {aside})" if aside else f"{run.number}"
             sides.setdefault(winner, {}).setdefault(f"{winner} ({role})", []).append(text)
@@ -132,7 +135,7 @@ def _opposite(runs: Sequence[Compared], condition: str) -> Iterator[str]:
 
 
 def _variants(run: Compared) -> frozenset[str]:
-    return frozenset((run.question.baseline, run.question.repair))
+    return frozenset((run.record.question.baseline, run.record.question.repair))
 
 
 def facts_table(runs: Sequence[Compared], facts: Facts) -> Table:

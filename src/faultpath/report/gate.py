@@ -1,6 +1,5 @@
 """Questions of a build or a test, answered from a result and nothing else."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, get_args
 
@@ -79,9 +78,3 @@ def holds_when_shared(record: AuditResult) -> Answer:
     effect = next((effect for effect in record.effects if effect.condition == SHARED), None)
     text = sentence(f"{where(SHARED)}, {in_short(record, effect)}")
     return Answer(effect is not None and effect.leads and effect.sign > 0, text)
-
-
-def broken(record: AuditResult, conditions: Sequence[str]) -> dict[str, Answer]:
-    """Return which of the conditions to fail for are met: by name, each with its answer."""
-    answers = {condition: found(record, condition) for condition in conditions}
-    return {name: answer for name, answer in answers.items() if answer}

@@ -61,6 +61,8 @@ def report_page(source: ReportInput) -> str:
         conditions=titles,
         names=(question.baseline, question.repair),
         plain=answers(record),
+        scenes_run=phrases.scenes_run(record),
+        stopping=phrases.stopping(record),
         finding=_finding(record),
         changes=[(moved.turn, phrases.change(record, moved)) for moved in record.changes],
         adding=why,

@@ -17,6 +17,7 @@ from faultpath.report.sentences.phrases import (
     for_trainings,
     in_trials_that_ran,
     not_standing,
+    stopping,
 )
 from faultpath.report.sentences.words import words
 from faultpath.report.tables import Line, Table, line
@@ -40,8 +41,8 @@ def decision(record: AuditResult, details: bool = False) -> RenderableType:
     parts: list[RenderableType] = [Text(said.headline, style="bold")]
     if fault := wording.faults(record.facts):
         parts += [Text(f"Fault: {fault}.", style="dim")]
-    if record.stopping:
-        parts += [Text(f"A sequential audit: {record.stopping}.")]
+    if how := stopping(record):
+        parts += [Text(f"A sequential audit: {how}.")]
     parts += [Text(""), Parted(success), Text(""), Parted(effects)]
     if any(share.result.kind in ("interval", "two pieces") for share in record.break_even):
         explained = (

@@ -46,7 +46,7 @@ def _answers(record: AuditResult) -> dict[str, list[str]]:
     least = record.testing.scenes_needed
     if record.invalid:
         return {"Left open": [_WHY_NO_RESULT[record.invalid]]}
-    sure = [*reach(record), *phrases.hardly_acted(record)]
+    sure = [*reach(record), *_hardly_acted(record)]
     if record.few:
         few = (
             f"Too few scenes: {counted(record.scenes, 'scene')} compared, and no difference can be "
@@ -142,6 +142,22 @@ def reach(record: AuditResult) -> Iterator[str]:
     if run > 1 and facts.unit == "scene" and record.effects and len(record.effects[0].won) == 1:
         yield f"All {run} seeds gave the same outcome in every trial: together they count as one."
     yield from _stopped(record)
+
+
+def _hardly_acted(record: AuditResult) -> Iterator[str]:
+    """Name the versions in which the fault changed nothing in most of the trials."""
+    acted = {effect.condition for effect in record.effects if effect.acted}
+    faulted = {
+        condition.name: (condition.baseline_readers, condition.readers)
+        for condition in record.conditions
+    }
+    for cell in record.cells:
+        readers = faulted[cell.condition][cell.variant == record.question.repair]
+        if cell.condition in acted and readers and 2 * cell.altered_trials < cell.trials:
+            yield (
+                f"{capital(where(cell.condition))}, the fault changed something in only "
+                f"{cell.altered_trials} of {cell.trials} trials of {cell.variant}."
+            )
 
 
 def _stopped(record: AuditResult) -> Iterator[str]:
