@@ -167,6 +167,15 @@ class AuditResult(Result):
         """Those over the beta factor."""
         return tuple(shares for shares in self.break_evens if shares.over == "beta")
 
+    @property
+    def titles(self) -> dict[str, str]:
+        """Title of each condition, by its name."""
+        return {condition.name: condition.title for condition in self.conditions}
+
+    def effect(self, condition: str) -> Effect | None:
+        """Return the effect under a condition; `None` where it has none."""
+        return next((effect for effect in self.effects if effect.condition == condition), None)
+
     def winner(self, sign: int) -> str:
         """Return the variant of a decided side."""
         return self.question.repair if sign > 0 else self.question.baseline

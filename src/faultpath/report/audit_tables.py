@@ -293,5 +293,4 @@ def by_threshold(record: AuditResult) -> Table | None:
 
 
 def _titles(record: AuditResult) -> tuple[str, ...]:
-    titles = {condition.name: condition.title for condition in record.conditions}
-    return tuple(titles.get(effect.condition, effect.condition) for effect in record.effects)
+    return tuple(record.titles[effect.condition] for effect in record.effects)

@@ -50,9 +50,7 @@ class Compared:
     def effect(self, condition: str) -> Effect | None:
         """Return its effect under a condition, as decided beside the others; `None` where it has
         none."""
-        effect = next(
-            (effect for effect in self.record.effects if effect.condition == condition), None
-        )
+        effect = self.record.effect(condition)
         if effect is None or self.family is None or condition not in self.family:
             return effect
         sign, p = self.family[condition]
@@ -79,8 +77,7 @@ class Compared:
 
     def absent(self, condition: str) -> str:
         """Say why it has no effect under a condition."""
-        there = any(recorded.name == condition for recorded in self.record.conditions)
-        return "every pair void" if there else "not run"
+        return "every pair void" if condition in self.record.titles else "not run"
 
 
 def titles(runs: Sequence[Compared]) -> dict[str, str]:
@@ -89,20 +86,15 @@ def titles(runs: Sequence[Compared]) -> dict[str, str]:
 
     Correct inputs stand first and the shared fault last, as in every audit.
     """
-    by_condition = {
-        condition.name: condition.title
-        for run in reversed(runs)
-        for condition in run.record.conditions
-    }
-    order = {condition.name: None for run in runs for condition in run.record.conditions}
+    by_condition: dict[str, str] = {}
+    for run in runs:
+        for condition, title in run.record.titles.items():
+            by_condition.setdefault(condition, title)
     primaries = {run.record.facts.primary for run in runs}
+    places = {CORRECT: 0, SHARED: 2}
     return {
-        condition: f"{by_condition[condition]} (primary)"
-        if primaries == {condition}
-        else by_condition[condition]
-        for condition in sorted(
-            order, key=lambda condition: {CORRECT: 0, SHARED: 2}.get(condition, 1)
-        )
+        condition: by_condition[condition] + (" (primary)" if primaries == {condition} else "")
+        for condition in sorted(by_condition, key=lambda condition: places.get(condition, 1))
     }
 
 

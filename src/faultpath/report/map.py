@@ -57,15 +57,14 @@ def _conditions(record: MapResult) -> Table:
 
 
 def _flips(record: MapResult) -> Table:
-    question, facts = record.question, record.facts
-    ahead = {1: question.repair, -1: question.baseline}
+    facts = record.facts
     lines: list[Line] = []
     for flip in record.flips:
         kept = turned = "neither"
         if flip.start and flip.until is not None:
-            kept = f"{ahead[flip.start]}, {size_label(facts, flip.until)}"
+            kept = f"{record.winner(flip.start)}, {size_label(facts, flip.until)}"
         if flip.turned and flip.first is not None and flip.last is not None:
-            turned = f"{ahead[flip.turned]}, {size_label(facts, flip.first)}"
+            turned = f"{record.winner(flip.turned)}, {size_label(facts, flip.first)}"
             if abs(flip.last) < facts.up_to:
                 turned += f" to {size_label(facts, flip.last)}"
         condition = SHARED if flip.condition == SHARED else f"{flip.condition} alone"

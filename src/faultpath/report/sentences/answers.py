@@ -113,7 +113,7 @@ def _follows(record: AuditResult) -> Iterator[str]:
 
 def _unknown(record: AuditResult) -> str:
     """Say that no choice follows, and which differences the primary contrast leaves possible."""
-    main = next((e for e in record.effects if e.condition == record.facts.primary), None)
+    main = record.effect(record.facts.primary)
     text = "Not enough is known to prefer either"
     if main is None or not main.acted or main.low is None or main.high is None:
         return f"{text}."

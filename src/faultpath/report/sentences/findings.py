@@ -101,10 +101,9 @@ def _recheck(finding: Recheck) -> str:
 
 
 def _without_pairs(record: AuditResult) -> Iterator[str]:
-    compared = {effect.condition for effect in record.effects}
-    for condition in record.conditions:
-        if condition.name not in compared:
-            yield f"{phrases.no_pair(condition.name)}: the table shows what failed."
+    for condition in record.titles:
+        if record.effect(condition) is None:
+            yield f"{phrases.no_pair(condition)}: the table shows what failed."
 
 
 def _failed_trials(record: AuditResult) -> Iterator[str]:

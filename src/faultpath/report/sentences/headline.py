@@ -23,7 +23,7 @@ def headline(record: AuditResult) -> str:
     if record.invalid:
         return NO_RESULT[record.invalid]
     primary = record.facts.primary
-    main = next((effect for effect in record.effects if effect.condition == primary), None)
+    main = record.effect(primary)
     tested = [effect for effect in record.effects if effect.acted]
     if main is None:
         return f"{no_pair(primary)}."

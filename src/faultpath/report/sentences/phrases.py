@@ -46,10 +46,9 @@ _TESTS = {
 
 def tests(record: AuditResult) -> str:
     """Return which tests gave which p-values, with a sentence on each; empty where none did."""
-    titles = {condition.name: condition.title for condition in record.conditions}
     by_name: dict[str, list[str]] = {}
     for effect in record.effects:
-        title = titles.get(effect.condition, effect.condition)
+        title = record.titles[effect.condition]
         by_name.setdefault(effect.test, []).append(f"{title} {p_value(effect.p_value)}")
     said: list[str] = []
     for name, values in by_name.items():
