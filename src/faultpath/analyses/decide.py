@@ -100,7 +100,7 @@ def decide(
         ),
         stopped=state and state.model_copy(update={"small": ()} if invalid else {}),
         # A result that is decided anew has the first already.
-        findings=tuple(dict.fromkeys((*Unpaired.of(comparison.unpaired), *findings))),
+        findings=tuple(dict.fromkeys((*Unpaired.first_of(comparison.unpaired), *findings))),
     )
 
 

@@ -29,7 +29,7 @@ from faultpath.core.files.parquet import Unreadable
 from faultpath.core.text import counted
 from faultpath.faults import FaultText
 from faultpath.report.inputs import ReportInput
-from faultpath.report.sentences.findings import said
+from faultpath.report.sentences.findings import describe
 from faultpath.run import system_shown
 from faultpath.run.execution.runner import RunResult
 from faultpath.run.findings import Finding, Unrecorded, Unrepeated
@@ -123,7 +123,7 @@ def carry_out(audit: Audit, job: Job, signals: bool = True) -> Run:
             broken = result.deliveries.model_copy(update={"repeats": False})
             record = concluded(folder, library_hash, partial(conclude, broken))
         if finding:
-            job.display.say(said(finding))
+            job.display.say(describe(finding))
             record = record.model_copy(update={"findings": (*record.findings, finding)})
     recorded = dict(sorted(recorded.items()))
     write_text(folder / RECORD, as_text(record), folder)

@@ -74,7 +74,7 @@ class MapPlan(Analysis[list[Point]]):
         `UserError` where a point has no pair left.
         """
         differences, unpaired = self.differences(sorted(items), trials)
-        findings = (*Unpaired.of(unpaired), *deliveries.findings)
+        findings = (*Unpaired.first_of(unpaired), *deliveries.findings)
         invalid: Invalid | None = "unpaired" if unpaired else None
         if not deliveries.repeats:
             invalid = "unrepeatable"

@@ -125,7 +125,7 @@ def concluded(
         versions=tuple(versions),
         invalid=invalid,
         failed=int(trials.failed.sum()),
-        findings=(*Unpaired.of(unpaired), *deliveries.findings),
+        findings=(*Unpaired.first_of(unpaired), *deliveries.findings),
     )
 
 

@@ -71,11 +71,9 @@ def _follows(record: AuditResult) -> Iterator[str]:
     leading = [effect for effect in tested if effect.leads]
     disagree = {effect.sign for effect in leading} == {1, -1}
     if not leading:
-        if any(effect.sign and effect.uneven for effect in tested):
-            (first, *_) = (effect for effect in tested if effect.sign and effect.uneven)
-            yield (
-                f"No choice can rest on what is significant: {phrases.failed_more(record, first)}."
-            )
+        if uneven := [effect for effect in tested if effect.sign and effect.uneven]:
+            failed = phrases.failed_more(record, uneven[0])
+            yield f"No choice can rest on what is significant: {failed}."
         elif any(effect.sign for effect in tested):
             yield "What is significant lies at the floor or ceiling: no choice can rest on it."
         elif tested and all(record.is_small(effect) for effect in tested):

@@ -28,12 +28,12 @@ def of_audit(record: AuditResult) -> tuple[str, ...]:
         *_without_pairs(record),
         *_failed_trials(record),
         *_partly_measured(record),
-        *map(said, record.findings),
+        *map(describe, record.findings),
         *([phrases.earlier_analyses(record)] if record.earlier else ()),
     )
 
 
-def said(finding: Finding) -> str:
+def describe(finding: Finding) -> str:
     """Return a finding as a sentence or two."""
     match finding:
         case Unpaired() | Unproven() | Unread():
