@@ -50,10 +50,7 @@ def audit(folder: Path) -> AuditResult:
     """Decide a stored audit anew and write its record and pages."""
     before = parsed(folder / RECORD, AuditResult)
     outcomes = read_outcomes(folder / OUTCOMES)
-    repeats = before.invalid != "unrepeatable"
-    record = decide(
-        before.question, before.facts, before.conditions, outcomes, before.findings, repeats
-    )
+    record = decide(before.question, before.facts, before.conditions, outcomes, before.findings)
     (folder / RECORD).write_text(as_text(record), "utf-8")
     _keep_examples(folder, record, outcomes)
     _reseal(folder)
@@ -109,8 +106,7 @@ def scan(folder: Path) -> ScanResult:
         first=scenes[:first],
         second=scenes[first:],
     )
-    repeats = before.invalid != "unrepeatable"
-    deliveries = Deliveries(rows=(), findings=before.findings, repeats=repeats)
+    deliveries = Deliveries(rows=(), findings=before.findings)
     record = concluded(before.question, before.facts, before.ranking, scanned, trials, deliveries)
     (folder / SCAN).write_text(record.model_dump_json(indent=1) + "\n", "utf-8")
     _reseal(folder)

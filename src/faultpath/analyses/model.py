@@ -1,11 +1,12 @@
 """The result of an audit in numbers: what was asked, what came out, and what it means."""
 
+from collections.abc import Sequence
 from typing import Literal
 
 from faultpath.analyses.effects import Change, Effect, Secondary
 from faultpath.analyses.facts import ComparisonFacts, EarlierAnalysis, Question
 from faultpath.core.results import Result
-from faultpath.run.findings import Finding
+from faultpath.run.findings import Finding, Recheck, Unpaired, Unrepeated
 from faultpath.stats.estimate import BreakEven
 
 CORRECT = "correct"
@@ -27,6 +28,13 @@ def where(condition: str) -> str:
         if condition == SHARED
         else f"with the fault at the {condition} alone"
     )
+
+
+def invalid_by(findings: Sequence[Finding]) -> Invalid | None:
+    """Return why no result follows from trials in which this was found; `None` where one does."""
+    if any(isinstance(f, Unrepeated) or (isinstance(f, Recheck) and f.deviation) for f in findings):
+        return "unrepeatable"
+    return "unpaired" if any(isinstance(f, Unpaired) for f in findings) else None
 
 
 class FaultedTap(Result):

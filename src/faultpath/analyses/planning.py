@@ -62,14 +62,7 @@ class Audit(Analysis[None]):
             )
             for condition in self.conditions
         ]
-        return decide(
-            question,
-            self.facts,
-            conditions,
-            trials,
-            deliveries.findings,
-            repeats=deliveries.repeats,
-        )
+        return decide(question, self.facts, conditions, trials, deliveries.findings)
 
     def stops(self, trials: Trials) -> bool:
         """Return whether a sequential audit ends with these trials."""

@@ -119,12 +119,11 @@ def carry_out(audit: Audit, job: Job, signals: bool = True) -> Run:
     recorded = _kept_signals(folder, result)
     if signals:
         recorded, finding = _recorded(audit, job, record, result, recorded)
-        if isinstance(finding, Unrepeated):
-            broken = result.deliveries.model_copy(update={"repeats": False})
-            record = concluded(folder, library_hash, partial(conclude, broken))
         if finding:
             job.display.say(describe(finding))
-            record = record.model_copy(update={"findings": (*record.findings, finding)})
+            findings = (*result.deliveries.findings, finding)
+            deliveries = result.deliveries.model_copy(update={"findings": findings})
+            record = concluded(folder, library_hash, partial(conclude, deliveries))
     recorded = dict(sorted(recorded.items()))
     write_text(folder / RECORD, as_text(record), folder)
     write_text(folder / SYSTEM, shown.model_dump_json(indent=1) + "\n", folder)
