@@ -22,9 +22,10 @@ from faultpath.analyses.scan.model import ScanResult
 from faultpath.api.folders import MAP, RECORD, SCAN, as_text
 from faultpath.api.replaying import shown_first
 from faultpath.api.runs import open_run
-from faultpath.report.map import table_markdown
+from faultpath.report.map import tables
 from faultpath.report.sentences.words import words
 from faultpath.report.tables import Table
+from faultpath.report.tables.markdown import blocks
 from faultpath.run import Deliveries, SystemSpec, Trials, load_system
 from faultpath.run.provenance import RunProvenance
 from faultpath.run.store.folder import OUTCOMES, TRACES, read_outcomes, seal
@@ -49,10 +50,7 @@ def audit(folder: Path) -> AuditResult:
     """Decide a stored audit anew and write its record and pages."""
     before = parsed(folder / RECORD, AuditResult)
     outcomes = read_outcomes(folder / OUTCOMES)
-    repeats = before.invalid != "unrepeatable"
-    record = decide(
-        before.question, before.facts, before.conditions, outcomes, before.findings, repeats
-    )
+    record = decide(before.question, before.facts, before.conditions, outcomes, before.findings)
     (folder / RECORD).write_text(as_text(record), "utf-8")
     _keep_examples(folder, record, outcomes)
     _reseal(folder)
@@ -86,7 +84,7 @@ def reversal_map(folder: Path) -> MapResult:
     analysis = replace(analysis, facts=facts)
     record = analysis.conclude(read_outcomes(folder / OUTCOMES), findings, points)
     (folder / MAP).write_text(record.model_dump_json(indent=1) + "\n", "utf-8")
-    (folder / "table.md").write_text(table_markdown(record), "utf-8")
+    (folder / "table.md").write_text(blocks(tables(record)) + "\n", "utf-8")
     _reseal(folder)
     load.cache_clear()
     return record
@@ -108,8 +106,7 @@ def scan(folder: Path) -> ScanResult:
         first=scenes[:first],
         second=scenes[first:],
     )
-    repeats = before.invalid != "unrepeatable"
-    deliveries = Deliveries(rows=(), findings=before.findings, repeats=repeats)
+    deliveries = Deliveries(rows=(), findings=before.findings)
     record = concluded(before.question, before.facts, before.ranking, scanned, trials, deliveries)
     (folder / SCAN).write_text(record.model_dump_json(indent=1) + "\n", "utf-8")
     _reseal(folder)

@@ -24,7 +24,7 @@ from faultpath.api.systems import executor_of
 from faultpath.core.errors import Stopped, UserError
 from faultpath.core.files.atomic import make_folder, write_text
 from faultpath.core.text import counted
-from faultpath.report.sentences.findings import said
+from faultpath.report.sentences.findings import describe
 from faultpath.run import (
     Group,
     Plan,
@@ -186,7 +186,7 @@ def fly(design: Design, folder: Path, workers: int | None, executor: str, show: 
             rounds, result = flight.fly(folder, force, progress=note, notice=notice)
             before = (*before, *rounds)
             for finding in result.findings:
-                show.say(said(finding))
+                show.say(describe(finding))
             flown = Flown(
                 design=design,
                 left_out=refused,

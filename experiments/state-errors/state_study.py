@@ -29,7 +29,7 @@ from faultpath.core.errors import Stopped, UserError
 from faultpath.core.files.atomic import make_folder, write, write_text
 from faultpath.faults import Address, at_readers, encode_record
 from faultpath.faults.recorded import decode_record
-from faultpath.report.sentences.findings import said
+from faultpath.report.sentences.findings import describe
 from faultpath.run import Plan, Row, Treatment, Trials, load_system
 from faultpath.run.execution.provenance import run_provenance
 from faultpath.run.execution.runner import run_plan
@@ -182,7 +182,7 @@ def fly(
             plan, folder / "run", progress=move, notice=show.say, system=system, executor=force
         )
     for finding in result.findings:
-        show.say(said(finding))
+        show.say(describe(finding))
     audits = SensorAudits(
         design=design,
         options=design.options,

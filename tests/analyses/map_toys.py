@@ -9,8 +9,8 @@ from faultpath.analyses.map.decide import decided
 from faultpath.analyses.map.lattice import COARSE, UNITS, Point, lattice
 from faultpath.analyses.map.model import MapFacts, MapResult
 from faultpath.analyses.map.surface import Differences, next_points
-from faultpath.analyses.model import Invalid
 from faultpath.faults import FaultText
+from faultpath.run.findings import Finding
 from faultpath.run.question import MapQuestion
 
 MODULES = ("observer", "predictor")
@@ -33,8 +33,8 @@ Seen = Callable[[float, float], tuple[np.ndarray, np.ndarray]]
 """From two errors to success of the repair and of the baseline, `[scenes]`."""
 
 
-def concluded(differences: Differences, invalid: Invalid | None = None) -> MapResult:
-    return decided(QUESTION, FACTS, differences, invalid=invalid)
+def concluded(differences: Differences, *findings: Finding) -> MapResult:
+    return decided(QUESTION, FACTS, differences, findings=findings)
 
 
 def differences(seen: Seen, points: tuple[Point, ...], seeds: int = 1) -> Differences:

@@ -11,10 +11,25 @@ from faultpath.analyses.facts import ComparisonFacts, SceneOrder
 from faultpath.analyses.model import CORRECT, SHARED, AuditResult, Condition
 from faultpath.faults import FaultText
 from faultpath.run import Trial, Trials
+from faultpath.run.findings import Deviation, Finding, Recheck, Unpaired
 from faultpath.run.question import AuditQuestion
 from faultpath.system import Status
 
 BASELINE, REPAIR = "old", "new"
+_AGAIN = {"why": "sample", "unit": "", "variant": "old", "faults": "", "seed": 0, "unit_scenes": 9}
+SPOILS: Mapping[str, Finding] = {
+    "unrepeatable": Recheck(
+        **_AGAIN, scenes=("s1",), deviation=Deviation(scenes=("s1",), of=1, ended=1)
+    ),
+    "unpaired": Unpaired(
+        first=("new", "x"),
+        second=("old", "x"),
+        scene="s1",
+        seed=0,
+        differences=(("initial_hash", "a", "b"),),
+    ),
+}
+"""Findings after which no result follows, by why none does."""
 SCENES = 100
 MOST_WORDS = 24
 """Most words of a headline; names of modules and variants are one word each."""

@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 from map_toys import Seen, alike, concluded, differences, grown, record, reversal
+from outcome_tables import SPOILS
 from pydantic import ValidationError
 
 from faultpath.analyses.map.joint import Errors, lattice_weights
@@ -156,7 +157,7 @@ def test_a_place_between_points_is_claimed_nowhere() -> None:
 
 @pytest.mark.parametrize("invalid", ["unrepeatable", "unpaired"])
 def test_a_map_of_trials_on_which_nothing_rests_claims_nothing(invalid) -> None:
-    result = concluded(grown(reversal(100)), invalid=invalid)
+    result = concluded(grown(reversal(100)), SPOILS[invalid])
     assert words(result).headline.startswith("No result: ")
     assert words(result).sentences == ()
     assert not any(point.sign for point in result.points)

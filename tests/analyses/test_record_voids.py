@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from outcome_tables import BASELINE, REPAIR, SCENES, conditions, facts, question, rows
+from outcome_tables import BASELINE, REPAIR, SCENES, SPOILS, conditions, facts, question, rows
 
 from faultpath.analyses.decide import decide
 from faultpath.analyses.model import CORRECT, SHARED, AuditResult
@@ -179,7 +179,8 @@ def test_trials_that_do_not_repeat_or_are_no_pairs_support_nothing(invalid):
         last = trials[-1]
         trials[-1] = replace(last, outcome=replace(last.outcome, initial_hash="another"))
     table, over = Trials.of(trials), conditions(CORRECT, "observer", SHARED)
-    made = decide(question(), facts(), over, table, repeats=invalid == "unpaired")
+    found = [] if invalid == "unpaired" else [SPOILS[invalid]]
+    made = decide(question(), facts(), over, table, found)
     assert made.invalid == invalid
     assert words(made).headline.startswith("No result: ")
     assert not any(item.sign for item in (*made.effects, *made.changes))

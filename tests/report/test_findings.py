@@ -3,7 +3,7 @@
 import pytest
 from pydantic import TypeAdapter
 
-from faultpath.report.sentences.findings import said
+from faultpath.report.sentences.findings import describe
 from faultpath.run.findings import (
     Deviation,
     ExtraTrials,
@@ -98,7 +98,7 @@ def test_a_finding_is_said_from_its_data_alone(finding: Finding, words: str) -> 
     stored: TypeAdapter[Finding] = TypeAdapter(Finding)
     held = stored.validate_json(stored.dump_json(finding))
     assert held == finding
-    assert said(held).startswith(words)
+    assert describe(held).startswith(words)
     assert len({finding, held}) == 1  # results decided anew hold each once
 
 

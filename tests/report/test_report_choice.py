@@ -6,11 +6,11 @@ from dataclasses import replace
 import pytest
 from page_reader import unpack
 
-from faultpath.analyses.examples import captions, choose
+from faultpath.analyses.examples import choose
 from faultpath.analyses.model import AuditResult
 from faultpath.analyses.pairs import Pair, read_pairs
 from faultpath.report.inputs import ReportInput
-from faultpath.report.viewer import viewer_data
+from faultpath.report.viewer import captions, viewer_data
 from faultpath.system import Status
 
 CONDITIONS = ("correct", "predictor", "reconstruction", "shared")

@@ -9,13 +9,13 @@ import pytest
 from page_reader import Page, unpack
 
 import faultpath.analyses.pairs as page_pairs
-from faultpath.analyses.examples import captions
 from faultpath.analyses.pairs import PairKind, read_pairs
 from faultpath.core.text import capital
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
 from faultpath.report.sentences import phrases
 from faultpath.report.sentences.words import words
+from faultpath.report.viewer import captions
 from faultpath.stats.estimate import DEGREES, EM
 
 

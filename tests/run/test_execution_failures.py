@@ -15,7 +15,7 @@ from toy_system import STEPS, ToySystem
 
 from faultpath.core.errors import UserError
 from faultpath.loop import Reading
-from faultpath.report.sentences.findings import said
+from faultpath.report.sentences.findings import describe
 from faultpath.run.attempt import WrongOutcomes
 from faultpath.run.execution import dispatch
 from faultpath.run.execution.runner import run_plan
@@ -205,6 +205,6 @@ def test_a_system_that_takes_one_scene_at_a_time_is_found_again_by_the_second_ca
         result = run_plan(plan(alone="plain"), tmp_path / "run", workers=0, recheck=False)
         assert result.blocks_computed == computed
         assert not result.failures
-        (finding,) = (f for f in map(said, result.findings) if "when each ran alone" in f)
+        (finding,) = (f for f in map(describe, result.findings) if "when each ran alone" in f)
         assert "the truth value of an array is ambiguous" in finding
         assert f" of {UNITS} blocks" in finding

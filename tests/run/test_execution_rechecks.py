@@ -12,7 +12,7 @@ from toy_system import CONSUMERS, STEPS, ToySystem
 
 from faultpath.core.errors import Stopped
 from faultpath.loop import Reading
-from faultpath.report.sentences.findings import said
+from faultpath.report.sentences.findings import describe
 from faultpath.run import Deliveries
 from faultpath.run.execution.recheck import SAMPLE, Rechecks
 from faultpath.run.execution.runner import run_plan
@@ -91,7 +91,7 @@ def _plan(kind: str, count: int = 1, **options: str):
 def test_an_oddity_is_named_and_kept(tmp_path, kind, words):
     trials = _plan(kind)
     result = run_plan(trials, tmp_path, workers=int(kind == "writes"))
-    found = [finding for finding in result.findings if re.search(words, said(finding))]
+    found = [finding for finding in result.findings if re.search(words, describe(finding))]
     assert found, result.findings
     again = run_plan(trials, tmp_path, workers=0)
     assert again.blocks_computed == 0
@@ -107,7 +107,7 @@ def test_an_oddity_is_named_and_kept(tmp_path, kind, words):
 def test_what_does_not_repeat_is_seen_whatever_the_reason(tmp_path, kind, block):
     findings = run_plan(_plan(kind, count=12, block=block), tmp_path, workers=0).findings
     assert findings
-    assert all(said(finding).startswith("Results do not repeat: ") for finding in findings)
+    assert all(describe(finding).startswith("Results do not repeat: ") for finding in findings)
 
 
 @pytest.mark.parametrize("kind", ["", "crowded"])
@@ -177,7 +177,7 @@ def test_a_reader_that_never_reads_is_named(tmp_path):
     )
     asked = plan().model_copy(update={"rows": (row, deaf)})
     (finding,) = run_plan(asked, tmp_path, workers=0).findings
-    assert said(finding).startswith(
+    assert describe(finding).startswith(
         "Variant 'deaf' declares that observer.balance reads 'mass', but it"
     )
 

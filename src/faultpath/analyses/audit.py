@@ -57,14 +57,7 @@ class AuditAnalysis(Analysis[None]):
             )
             for condition in self.conditions
         ]
-        return decide(
-            question,
-            self.facts,
-            conditions,
-            trials,
-            deliveries.findings,
-            repeats=deliveries.repeats,
-        )
+        return decide(question, self.facts, conditions, trials, deliveries.findings)
 
     def stops(self, trials: Trials) -> bool:
         """Return whether a sequential audit ends with these trials."""

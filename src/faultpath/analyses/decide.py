@@ -18,9 +18,9 @@ from faultpath.analyses.model import (
     AuditResult,
     Condition,
     ConditionBreakEven,
-    Invalid,
     Share,
     Testing,
+    invalid_by,
 )
 from faultpath.analyses.shares import between
 from faultpath.analyses.stopping import stopped
@@ -38,13 +38,12 @@ def decide(
     conditions: Sequence[Condition],
     trials: Trials,
     findings: Sequence[Finding] = (),
-    repeats: bool = True,
 ) -> AuditResult:
     """Return the decision record of an audit.
 
     Each effect rests on the scenes that have its trials, each change on those that both have; a
     condition that has none is left out. The result carries `findings`, and pairs that met different
-    conditions. Where there are such, or trials do not `repeats`, nothing is significant.
+    conditions. Where there are such, or trials did not repeat, nothing is significant.
     `UserError` when no pair is left under any condition, for a primary
     condition that the audit does not have, and where newly trained models are asked for and too few
     trainings differ.
@@ -55,9 +54,9 @@ def decide(
     # Whether a fault acted is told by receipts, and other tools' results have none.
     untested = () if facts.judged else untested_conditions(conditions, counts)
     comparison, family = family_of(question, facts, conditions, trials, untested)
-    invalid: Invalid | None = "unpaired" if comparison.unpaired else None
-    if not repeats:
-        invalid = "unrepeatable"
+    # A result that is decided anew has the first already.
+    findings = tuple(dict.fromkeys((*Unpaired.first_of(comparison.unpaired), *findings)))
+    invalid = invalid_by(findings)
     if invalid:
         family = family.without_claims()
     models = question.generalise == "models"
@@ -96,8 +95,7 @@ def decide(
             intervals=first.estimate().method,
         ),
         stopped=state and state.model_copy(update={"small": ()} if invalid else {}),
-        # A result that is decided anew has the first already.
-        findings=tuple(dict.fromkeys((*Unpaired.of(comparison.unpaired), *findings))),
+        findings=findings,
     )
 
 

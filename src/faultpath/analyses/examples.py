@@ -64,23 +64,14 @@ def choose(
     return tuple(at for at in ranked if at in chosen)
 
 
-def captions(pairs: Sequence[Pair], sampled: bool = False) -> dict[At, str]:
-    """Say of each scene and seed in how many the same versions succeed under every condition, and
-    whether it is typical of them."""
+def alike(pairs: Sequence[Pair]) -> dict[At, tuple[int, bool]]:
+    """Return of each scene and seed how many go like it, itself included, and whether it is typical
+    of them: some end apart at other times, and it does at the median."""
     patterns = _patterns(pairs)
-    scenes, seeds = (
-        (len(set(values)) for values in zip(*patterns, strict=True)) if patterns else (0, 0)
-    )
-    noun = "sampled scenes" if sampled else "scenes"
-    of = f"{scenes} {noun}" if seeds < 2 else f"{len(patterns)} ({scenes} {noun}, {seeds} seeds)"
     like, away = Counter(patterns.values()), _away(pairs, patterns)
     varied = {patterns[at] for at, seconds in away.items() if seconds}
-    typical = " It is a typical one: its trials end apart at the median time of these."
     return {
-        at: f"{like[pattern]} of {of} {'goes' if like[pattern] == 1 else 'go'} like this one: "
-        "the same versions succeed under each condition."
-        f"{typical if pattern in varied and not away[at] else ''}"
-        for at, pattern in patterns.items()
+        at: (like[pattern], pattern in varied and not away[at]) for at, pattern in patterns.items()
     }
 
 

@@ -100,11 +100,6 @@ class ComparisonFacts(Facts):
         return self.pairing != "planned"
 
     @property
-    def family(self) -> str:
-        """How p-values were adjusted, as part of a sentence."""
-        return "after Holm" if self.order is None else "within the family"
-
-    @property
     def tests(self) -> str:
         """How effects are tested and adjusted, in words; empty for a sequential audit."""
         return TESTS if self.order is None else ""

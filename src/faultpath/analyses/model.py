@@ -1,11 +1,12 @@
 """The result of an audit in numbers: what was asked, what came out, and what it means."""
 
+from collections.abc import Sequence
 from typing import Literal
 
 from faultpath.analyses.effects import Change, Effect, Secondary
 from faultpath.analyses.facts import ComparisonFacts, EarlierAnalysis, Question
 from faultpath.core.results import Result
-from faultpath.run.findings import Finding
+from faultpath.run.findings import Finding, Recheck, Unpaired, Unrepeated
 from faultpath.stats.estimate import BreakEven
 
 CORRECT = "correct"
@@ -27,6 +28,13 @@ def where(condition: str) -> str:
         if condition == SHARED
         else f"with the fault at the {condition} alone"
     )
+
+
+def invalid_by(findings: Sequence[Finding]) -> Invalid | None:
+    """Return why no result follows from trials in which this was found; `None` where one does."""
+    if any(isinstance(f, Unrepeated) or (isinstance(f, Recheck) and f.deviation) for f in findings):
+        return "unrepeatable"
+    return "unpaired" if any(isinstance(f, Unpaired) for f in findings) else None
 
 
 class FaultedTap(Result):
@@ -168,6 +176,15 @@ class AuditResult(Result):
         """Those over the beta factor."""
         return tuple(shares for shares in self.break_evens if shares.over == "beta")
 
+    @property
+    def titles(self) -> dict[str, str]:
+        """Title of each condition, by its name."""
+        return {condition.name: condition.title for condition in self.conditions}
+
+    def effect(self, condition: str) -> Effect | None:
+        """Return the effect under a condition; `None` where it has none."""
+        return next((effect for effect in self.effects if effect.condition == condition), None)
+
     def winner(self, sign: int) -> str:
         """Return the variant of a decided side."""
         return self.question.repair if sign > 0 else self.question.baseline
@@ -175,27 +192,3 @@ class AuditResult(Result):
     def is_small(self, effect: Effect) -> bool:
         """Whether an effect was shown to be smaller than the margin of a sequential audit."""
         return self.stopped is not None and effect.condition in self.stopped.small
-
-    @property
-    def scenes_run(self) -> str:
-        """The number of scenes, and of how many where an audit could have taken more."""
-        most = str(self.facts.n_scenes)
-        if self.stopped is None or self.stopped.scenes == self.facts.n_scenes:
-            return most
-        return f"{self.stopped.scenes} of at most {most}"
-
-    @property
-    def stopping(self) -> str:
-        """How a sequential audit was to stop."""
-        order, margin_pp = self.facts.order, self.question.margin_pp
-        if order is None:
-            return ""
-        every = self.question.stop_when == "all-decided"
-        what = "every effect" if every else "the primary contrast"
-        small = f" or shown to be smaller than {margin_pp:g} pp" if margin_pp else ""
-        return (
-            f"the audit was to stop once {what} is significant{small}, at a look after every "
-            f"{'scene' if order.per_analysis == 1 else f'{order.per_analysis} scenes'}, or after "
-            f"{self.facts.n_scenes}; the order of its scenes was drawn beforehand from the hash "
-            f"of the library and the seed {order.seed}"
-        )

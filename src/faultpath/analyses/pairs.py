@@ -26,20 +26,6 @@ class PairKind(StrEnum):
     NEITHER = "neither"
     VOID = "void"
 
-    @property
-    def short(self) -> str:
-        """In two words."""
-        return self.value.replace("-", " ")
-
-
-WORDS = {
-    PairKind.BOTH: "both succeed",
-    PairKind.REPAIR_ONLY: "only the repair succeeds",
-    PairKind.BASELINE_ONLY: "only the baseline succeeds",
-    PairKind.NEITHER: "neither succeeds",
-    PairKind.VOID: "void: a trial failed to run, or the two are not the same trial",
-}
-
 
 @dataclass(frozen=True)
 class Pair:

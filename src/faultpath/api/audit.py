@@ -29,7 +29,7 @@ from faultpath.core.files.parquet import Unreadable
 from faultpath.core.text import counted
 from faultpath.faults import FaultText
 from faultpath.report.inputs import ReportInput
-from faultpath.report.sentences.findings import said
+from faultpath.report.sentences.findings import describe
 from faultpath.run import system_shown
 from faultpath.run.execution.runner import RunResult
 from faultpath.run.findings import Finding, Unrecorded, Unrepeated
@@ -119,12 +119,11 @@ def carry_out(audit: AuditAnalysis, job: Job, signals: bool = True) -> Run:
     recorded = _kept_signals(folder, result)
     if signals:
         recorded, finding = _recorded(audit, job, record, result, recorded)
-        if isinstance(finding, Unrepeated):
-            broken = result.deliveries.model_copy(update={"repeats": False})
-            record = concluded(folder, library_hash, partial(conclude, broken))
         if finding:
-            job.display.say(said(finding))
-            record = record.model_copy(update={"findings": (*record.findings, finding)})
+            job.display.say(describe(finding))
+            findings = (*result.deliveries.findings, finding)
+            deliveries = result.deliveries.model_copy(update={"findings": findings})
+            record = concluded(folder, library_hash, partial(conclude, deliveries))
     recorded = dict(sorted(recorded.items()))
     write_text(folder / RECORD, as_text(record), folder)
     write_text(folder / SYSTEM, shown.model_dump_json(indent=1) + "\n", folder)

@@ -17,7 +17,7 @@ from faultpath.api.display import Display, Show, display
 from faultpath.api.runs import MapRun, Run, ScanRun
 from faultpath.api.systems import Chosen, choose, executor_of
 from faultpath.core.errors import UserError
-from faultpath.report.sentences.findings import said
+from faultpath.report.sentences.findings import describe
 from faultpath.run import Plan, SystemSpec
 from faultpath.run.code import system_code
 from faultpath.run.execution.provenance import run_provenance
@@ -186,7 +186,7 @@ class Job:
             say(f"  and {len(alike) - _ERRORS_SHOWN} other errors, in {self.folder / 'failures'}")
         if not self.display.is_command:
             for finding in result.findings:
-                say(said(finding))
+                say(describe(finding))
         return run_provenance(
             folder or self.folder,
             names,

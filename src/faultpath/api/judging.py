@@ -23,7 +23,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import begin, locked, write_file, write_text
 from faultpath.interface import Interface
 from faultpath.report.inputs import ReportInput
-from faultpath.report.sentences.findings import said
+from faultpath.report.sentences.findings import describe
 from faultpath.run.deliveries import Deliveries, RowDeliveries
 from faultpath.run.execution.provenance import amend, run_provenance
 from faultpath.run.execution.runner import RunResult
@@ -87,7 +87,7 @@ def judge(
     run.report()
     if not shown.is_command:
         for finding in paired.findings:
-            shown.say(said(finding))
+            shown.say(describe(finding))
     return run
 
 

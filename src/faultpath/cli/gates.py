@@ -76,7 +76,7 @@ class Gate:
         from faultpath.core.files.atomic import write_file, write_text
         from faultpath.core.files.opening import contents
         from faultpath.report.build import junit, summary
-        from faultpath.report.gate import broken
+        from faultpath.report.gate import found
 
         records = [run.record for run in runs]
         if self.junit is not None:
@@ -87,7 +87,8 @@ class Gate:
             write_file(self.summary, before + summary(records, self.conditions).encode())
         status = FOUND if any(run.broken for run in runs) else 0
         for record in records:
-            for name, answer in broken(record, self.conditions).items():
-                say(f"--fail-if {name}: {answer.reason}", markup=False, style="bold red")
-                status = FOUND
+            for name in self.conditions:
+                if answer := found(record, name):
+                    say(f"--fail-if {name}: {answer.reason}", markup=False, style="bold red")
+                    status = FOUND
         return status

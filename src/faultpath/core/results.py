@@ -15,11 +15,11 @@ class Frozen(BaseModel):
 
 
 class Shown(BaseModel):
-    """Data with many fields, of which a console shows the headline or some."""
+    """Data with many fields, of which a console shows some."""
 
     def __repr__(self) -> str:
-        """Return the headline where there is one, else the fields that say something."""
-        line = getattr(self, "headline", "") or ", ".join(
+        """Return the fields that say something."""
+        line = ", ".join(
             f"{name}={shortened(printable(str(value)), _CELL)}"
             for name, value in self
             if value not in (None, (), {}, "")

@@ -9,7 +9,7 @@ from faultpath.report.sentences import phrases, wording
 from faultpath.report.sentences.headline import headline
 from faultpath.report.sentences.phrases import adjusted, not_standing, only_alone
 from faultpath.report.tables import MISSING, Entry, Line, Table, line
-from faultpath.report.tables.markdown import block
+from faultpath.report.tables.markdown import blocks
 from faultpath.stats.estimate import Estimate
 
 _VARIANTS = ("baseline", "repair")
@@ -50,7 +50,7 @@ def _entries(record: AuditResult, effect: Effect) -> Mapping[str, Entry | str]:
         "won": wording.won(effect.won),
         "p": wording.p_value(effect.p_value),
         "mcnemar": MISSING if beside is None else wording.p_value(beside),
-        "holm": wording.adjusted(effect),
+        "holm": MISSING if effect.corrected_p is None else wording.p_value(effect.corrected_p),
         "decided": decided_for(record, effect),
         "power": wording.detectable(effect),
         "scenes": str(effect.scenes),
@@ -149,27 +149,26 @@ def whole_table(record: AuditResult) -> Table:
     """Return every quantity of every condition, with the question as title: the table of a
     paper."""
     question, facts = record.question, record.facts
-    variants, seeds = (
-        f"{question.repair} against {question.baseline}",
-        wording.seeds(facts.seeds),
+    what = (
+        f"{question.repair} against {question.baseline} on {facts.system}, fault {question.fault}"
     )
-    title = (
-        f"{variants} on {facts.system}, fault {question.fault}: {record.scenes_run} scenes of "
-        f"{facts.library}, {seeds}"
-    )
+    scenes = f"scenes of {facts.library}"
     if facts.judged:
         under = f", {question.fault}" if question.fault else ""
-        title = f"{variants}{under}: {record.scenes_run} {facts.unit}s, {seeds}"
-    corrected = f"Holm's correction is for {record.testing.hypotheses} contrasts."
-    if (sets := len(record.break_evens)) > 1:
-        corrected += f" Of {sets} break-even sets each is wrong in at most 5 % of audits, one or "
-        corrected += "another of them in more."
+        what, scenes = f"{question.repair} against {question.baseline}{under}", f"{facts.unit}s"
+    title = f"{what}: {phrases.scenes_run(record)} {scenes}, {wording.seeds(facts.seeds)}"
+    hypotheses, sets = record.testing.hypotheses, len(record.break_evens)
+    corrected = f"Holm's correction is for {hypotheses} contrasts."
+    if sets > 1:
+        corrected += (
+            f" Of {sets} break-even sets each is wrong in at most 5 % of audits, one or another of "
+            "them in more."
+        )
     if record.stopped is not None:
-        contrasts = counted(record.testing.hypotheses, "contrast")
-        others = "" if record.testing.hypotheses == 1 else ", half of it for the primary one"
         corrected = (
-            f"The audit was sequential: intervals and p-values hold at whatever scene it stopped. "
-            f"{contrasts} share the error rate{others}."
+            "The audit was sequential: intervals and p-values hold at whatever scene it stopped. "
+            f"{counted(hypotheses, 'contrast')} share the error rate"
+            f"{', half of it for the primary one' if hypotheses > 1 else ''}."
         )
     tests = f"Tests: {facts.tests}. " if facts.tests else ""
     notes = (
@@ -191,8 +190,7 @@ def whole_table(record: AuditResult) -> Table:
 
 def markdown_table(record: AuditResult) -> str:
     """Return the whole table as Markdown, with the question above it and the verdict below."""
-    tables = (whole_table(record), by_threshold(record))
-    return "\n\n".join(map(block, filter(None, tables)))
+    return blocks(filter(None, (whole_table(record), by_threshold(record))))
 
 
 def ended(record: AuditResult) -> Table:
@@ -295,5 +293,4 @@ def by_threshold(record: AuditResult) -> Table | None:
 
 
 def _titles(record: AuditResult) -> tuple[str, ...]:
-    titles = {condition.name: condition.title for condition in record.conditions}
-    return tuple(titles.get(effect.condition, effect.condition) for effect in record.effects)
+    return tuple(record.titles[effect.condition] for effect in record.effects)

@@ -15,13 +15,13 @@ def junit(records: Sequence[AuditResult], conditions: Sequence[str]) -> str:
     """Return JUnit's XML: a suite for each record, a case for its trials and each condition."""
     root = ElementTree.Element("testsuites", name="faultpath")
     for record in records:
-        question, said = record.question, words(record)
+        question, result = record.question, words(record)
         name = f"{question.repair} against {question.baseline}"
         name += f" under {question.fault}" if question.fault else ""
         failed = sum(count.failed for count in record.counts)
         cases = {
             "trials-ran": f"{failed} trials failed or are missing." if failed else "",
-            "result": said.headline if record.invalid else "",
+            "result": result.headline if record.invalid else "",
         }
         for condition in conditions:
             answer = found(record, condition)
@@ -38,7 +38,7 @@ def junit(records: Sequence[AuditResult], conditions: Sequence[str]) -> str:
             if failure:
                 wrong = ElementTree.SubElement(place, "failure", message=visible(failure))
                 wrong.text = visible(failure)
-        text = "\n".join((said.headline, *said.sentences, *said.findings))
+        text = "\n".join((result.headline, *result.sentences, *result.findings))
         ElementTree.SubElement(suite, "system-out").text = visible(text)
     return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
 
@@ -47,8 +47,8 @@ def summary(records: Sequence[AuditResult], conditions: Sequence[str]) -> str:
     """Return what was decided as Markdown: a headline, what a build fails for, answers, tables."""
     parts: list[str] = []
     for record in records:
-        said = words(record)
-        parts.append(f"### {markdown(said.headline)}")
+        result = words(record)
+        parts.append(f"### {markdown(result.headline)}")
         wrong = {condition: found(record, condition) for condition in conditions}
         marks = [
             f"- **{'fails' if answer else 'passes'}** `{name}`: {markdown(answer.reason)}"
@@ -56,8 +56,8 @@ def summary(records: Sequence[AuditResult], conditions: Sequence[str]) -> str:
         ]
         parts += ["\n".join(marks)] if marks else []
         parts += [f"**{label}.** {markdown(answer)}" for label, answer in answers(record).items()]
-        if said.findings:
-            noted = "\n".join(f"- {markdown(finding)}" for finding in said.findings)
+        if result.findings:
+            noted = "\n".join(f"- {markdown(finding)}" for finding in result.findings)
             parts.append(f"**Found in the run.**\n\n{noted}")
         parts.append(markdown_table(record))
     return "\n\n".join(parts).rstrip() + "\n"

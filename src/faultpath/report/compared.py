@@ -10,7 +10,6 @@ from pathlib import Path
 
 from faultpath.analyses.contrasts import effect_name
 from faultpath.analyses.effects import Effect
-from faultpath.analyses.facts import ComparisonFacts, Question
 from faultpath.analyses.model import CORRECT, SHARED, AuditResult
 from faultpath.analyses.sweep import decide_sizes
 from faultpath.report.inputs import ReportInput
@@ -48,22 +47,10 @@ class Compared:
         """Conditions under which it was made."""
         return self.source.provenance
 
-    @property
-    def question(self) -> Question:
-        """Question of the audit."""
-        return self.record.question
-
-    @property
-    def facts(self) -> ComparisonFacts:
-        """What its system told."""
-        return self.record.facts
-
     def effect(self, condition: str) -> Effect | None:
         """Return its effect under a condition, as decided beside the others; `None` where it has
         none."""
-        effect = next(
-            (effect for effect in self.record.effects if effect.condition == condition), None
-        )
+        effect = self.record.effect(condition)
         if effect is None or self.family is None or condition not in self.family:
             return effect
         sign, p = self.family[condition]
@@ -79,14 +66,18 @@ class Compared:
         return f"By itself, and not over all sizes: {own}" if fallen else own
 
     @property
+    def scenes_run(self) -> str:
+        """The number of scenes, and of how many where it could have taken more."""
+        return phrases.scenes_run(self.record)
+
+    @property
     def findings(self) -> tuple[str, ...]:
         """What was found in its trials, in words."""
         return of_audit(self.record)
 
     def absent(self, condition: str) -> str:
         """Say why it has no effect under a condition."""
-        there = any(recorded.name == condition for recorded in self.record.conditions)
-        return "every pair void" if there else "not run"
+        return "every pair void" if condition in self.record.titles else "not run"
 
 
 def titles(runs: Sequence[Compared]) -> dict[str, str]:
@@ -95,20 +86,15 @@ def titles(runs: Sequence[Compared]) -> dict[str, str]:
 
     Correct inputs stand first and the shared fault last, as in every audit.
     """
-    by_condition = {
-        condition.name: condition.title
-        for run in reversed(runs)
-        for condition in run.record.conditions
-    }
-    order = {condition.name: None for run in runs for condition in run.record.conditions}
-    primaries = {run.facts.primary for run in runs}
+    by_condition: dict[str, str] = {}
+    for run in runs:
+        for condition, title in run.record.titles.items():
+            by_condition.setdefault(condition, title)
+    primaries = {run.record.facts.primary for run in runs}
+    places = {CORRECT: 0, SHARED: 2}
     return {
-        condition: f"{by_condition[condition]} (primary)"
-        if primaries == {condition}
-        else by_condition[condition]
-        for condition in sorted(
-            order, key=lambda condition: {CORRECT: 0, SHARED: 2}.get(condition, 1)
-        )
+        condition: by_condition[condition] + (" (primary)" if primaries == {condition} else "")
+        for condition in sorted(by_condition, key=lambda condition: places.get(condition, 1))
     }
 
 
@@ -124,19 +110,21 @@ def _side_by_side(columns: Sequence[Mapping[str, str]], absent: str) -> dict[str
 def _question(runs: Sequence[Compared]) -> dict[str, tuple[str, ...]]:
     facts = [
         {
-            "Fault": str(run.question.fault),
-            "Baseline": run.question.baseline,
-            "Repair": run.question.repair,
-            "System": run.facts.system,
-            "Library": run.facts.library,
-            "State of the library": run.facts.library_hash[:_DIGITS],
-            "Scenes run": run.record.scenes_run,
+            "Fault": str(run.record.question.fault),
+            "Baseline": run.record.question.baseline,
+            "Repair": run.record.question.repair,
+            "System": run.record.facts.system,
+            "Library": run.record.facts.library,
+            "State of the library": run.record.facts.library_hash[:_DIGITS],
+            "Scenes run": phrases.scenes_run(run.record),
             "Scenes compared": str(run.record.scenes),
-            "Seeds": ", ".join(map(str, run.facts.seeds)),
-            "Primary contrast": run.facts.primary,
-            "Intervals and tests hold for": phrases.estimand(run.question, run.facts),
-            "Stopping": wording.sentence(run.record.stopping or "all scenes were run"),
-            **{f"Option {key}": value for key, value in sorted(run.question.options.items())},
+            "Seeds": ", ".join(map(str, run.record.facts.seeds)),
+            "Primary contrast": run.record.facts.primary,
+            "Intervals and tests hold for": phrases.estimand(run.record.question, run.record.facts),
+            "Stopping": wording.sentence(phrases.stopping(run.record) or "all scenes were run"),
+            **{
+                f"Option {key}": value for key, value in sorted(run.record.question.options.items())
+            },
         }
         for run in runs
     ]
@@ -172,7 +160,7 @@ def labels(runs: Sequence[Compared]) -> tuple[str, ...]:
 def swept(runs: Sequence[Compared]) -> tuple[str, tuple[float, ...]] | None:
     """Return the fault in whose size alone the questions differ, with the size in each run;
     `None` where they differ in something else."""
-    parts = [_SIZED.fullmatch(str(run.question.fault)) for run in runs]
+    parts = [_SIZED.fullmatch(str(run.record.question.fault)) for run in runs]
     groups = [part.groups() for part in parts if part]
     if len(runs) < 2 or len(groups) < len(runs) or len({(a, c) for a, _, c in groups}) > 1:
         return None

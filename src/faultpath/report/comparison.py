@@ -8,7 +8,7 @@ from rich.padding import Padding
 from rich.text import Text
 
 from faultpath.analyses.family import ALPHA
-from faultpath.analyses.model import SHARED, where
+from faultpath.analyses.model import where
 from faultpath.core.text import series, shortened
 from faultpath.report.audit_tables import decided_for
 from faultpath.report.compared import (
@@ -37,7 +37,7 @@ def headline(runs: Sequence[Compared]) -> str:
     """Return what all sizes of a sweep answer under the primary condition; of other runs how many
     there are, and where they are decided in opposite directions."""
     if sweep := swept(runs):
-        primary = next((p for p in titles(runs) if p == runs[0].facts.primary), SHARED)
+        primary = runs[0].record.facts.primary
         answer = _by_size(runs, primary, sweep[1])
         return f"{len(runs)} sizes of {sweep[0]}, {where(primary)}: {answer}"
     opposed = [
@@ -72,7 +72,7 @@ def sentences(runs: Sequence[Compared]) -> tuple[str, ...]:
     conclusions = conclusions or [
         "No two audits of the same versions are significant in opposite directions."
     ]
-    if len({run.facts.system for run in runs}) > 1:
+    if len({run.record.facts.system for run in runs}) > 1:
         conclusions += [
             "The runs are of different systems: the same name need not mean the same thing."
         ]
@@ -102,9 +102,10 @@ def _by_size(runs: Sequence[Compared], condition: str, sizes: Sequence[float]) -
     """Return who is ahead at which sizes: `gru ahead at 0.1; nothing significant at 0.05`."""
     at: dict[str, list[str]] = {}
     for run, size in sorted(zip(runs, sizes, strict=True), key=lambda pair: pair[1]):
-        sign = effect.sign if (effect := run.effect(condition)) else 0
-        ahead = {1: f"{run.question.repair} ahead", -1: f"{run.question.baseline} ahead"}
-        at.setdefault(ahead.get(sign, "nothing significant"), []).append(tick_label(size))
+        effect, words = run.effect(condition), "nothing significant"
+        if effect and effect.sign:
+            words = f"{run.record.winner(effect.sign)} ahead"
+        at.setdefault(words, []).append(tick_label(size))
     if len(at) == 1:
         (words,) = at
         return f"{words} at {'every' if words.endswith('ahead') else 'any'} size"
@@ -113,8 +114,7 @@ def _by_size(runs: Sequence[Compared], condition: str, sizes: Sequence[float]) -
 
 def _opposite(runs: Sequence[Compared], condition: str) -> Iterator[str]:
     """Yield which runs are decided for which variant, for variants that win in some runs and lose
-    in
-    others: `for a (baseline) in 1, for b (repair) in 2 and 3`."""
+    in others: `for a (baseline) in 1, for b (repair) in 2 and 3`."""
     decided = [(run, effect) for run in runs if (effect := run.effect(condition)) and effect.sign]
     for variants in dict.fromkeys(_variants(run) for run, _ in decided):
         sides: dict[str, dict[str, list[str]]] = {}
@@ -122,7 +122,7 @@ def _opposite(runs: Sequence[Compared], condition: str) -> Iterator[str]:
             if _variants(run) != variants:
                 continue
             role = "repair" if effect.sign > 0 else "baseline"
-            winner = run.question.repair if effect.sign > 0 else run.question.baseline
+            winner = run.record.winner(effect.sign)
             aside = wording.reservation(effect)
             text = f"{run.number} (at the {aside})" if aside else f"{run.number}"
             sides.setdefault(winner, {}).setdefault(f"{winner} ({role})", []).append(text)
@@ -132,7 +132,7 @@ def _opposite(runs: Sequence[Compared], condition: str) -> Iterator[str]:
 
 
 def _variants(run: Compared) -> frozenset[str]:
-    return frozenset((run.question.baseline, run.question.repair))
+    return frozenset((run.record.question.baseline, run.record.question.repair))
 
 
 def facts_table(runs: Sequence[Compared], facts: Facts) -> Table:

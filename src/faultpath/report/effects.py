@@ -40,12 +40,12 @@ class EffectRow:
 
 def effect_rows(record: AuditResult) -> list[EffectRow]:
     """Return a row for every condition, all pictures on one axis."""
-    effects = {effect.condition: effect for effect in record.effects}
     plot = _axis_of(record).at(6, _WIDE - 6)
     rows: list[EffectRow] = []
     for condition in record.conditions:
         primary = "primary" if condition.name == record.facts.primary else ""
-        effect, words = effects.get(condition.name), in_short(record, effects.get(condition.name))
+        effect = record.effect(condition.name)
+        words = in_short(record, effect)
         svg = Svg(_WIDE, _HIGH, f"{condition.title}: repair minus baseline, pp")
         _grid(svg, plot, 0, _HIGH)
         if effect is None:
@@ -179,7 +179,6 @@ def frequency_panels(record: AuditResult, beta: bool = False) -> list[tuple[str,
     zero is the set of shares at which neither variant is decided to be ahead, the ring the estimate
     of the crossing. The curve has the colour of a variant where a sentence names that variant.
     """
-    titles = {condition.name: condition.title for condition in record.conditions}
     noun = "beta" if beta else "frequency"
     over = "faults that are common cause" if beta else "episodes with the fault"
     with_curve = [share for share in _shares(record, beta) if _crosses(share)]
@@ -188,7 +187,7 @@ def frequency_panels(record: AuditResult, beta: bool = False) -> list[tuple[str,
     )
     panels: list[tuple[str, str]] = []
     for share in with_curve:
-        title, result = titles.get(share.condition, share.condition), share.result
+        title, result = record.titles[share.condition], share.result
         words = ahead(record.question, share, beta) or f"No {noun} is significant"
         svg = Svg(290, 248, f"{title}: expected success difference, share of {over}", f"{words}.")
         svg.text(0, 14, title, "head", room=285)
@@ -222,11 +221,9 @@ def frequency_panels(record: AuditResult, beta: bool = False) -> list[tuple[str,
 
 def no_break_even(record: AuditResult, beta: bool = False) -> list[str]:
     """Say of each other condition what is decided there."""
-    titles = {condition.name: condition.title for condition in record.conditions}
     none = f"no {'beta' if beta else 'frequency'} is significant"
     return [
-        f"{titles.get(share.condition, share.condition)}: "
-        f"{ahead(record.question, share, beta) or none}."
+        f"{record.titles[share.condition]}: {ahead(record.question, share, beta) or none}."
         for share in _shares(record, beta)
         if not _crosses(share)
     ]

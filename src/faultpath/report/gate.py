@@ -1,6 +1,5 @@
 """Questions of a build or a test, answered from a result and nothing else."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, get_args
 
@@ -52,15 +51,12 @@ def found(record: AuditResult, what: str) -> Answer:
             return Answer(True, f"{capital(places(behind))}, {ahead}")
         case "undecided":
             primary = record.facts.primary
-            main = next((effect for effect in record.effects if effect.condition == primary), None)
+            main = record.effect(primary)
             conclusive = main is not None and (main.sign != 0 or record.is_small(main))
             return Answer(not conclusive, f"{capital(where(primary))}: {in_short(record, main)}.")
         case "void":
             void = sum(effect.void for effect in record.effects)
-            lost = [condition.name for condition in record.conditions]
-            lost = [
-                name for name in lost if name not in {effect.condition for effect in record.effects}
-            ]
+            lost = [name for name in record.titles if record.effect(name) is None]
             sentences = [f"{counted(void, 'pair')} of trials {'is' if void == 1 else 'are'} void."]
             sentences += [f"{phrases.no_pair(name)}." for name in lost]
             return Answer(bool(void or lost), " ".join(sentences))
@@ -74,14 +70,8 @@ def holds_when_shared(record: AuditResult) -> Answer:
     Away from floor and ceiling, and not because the baseline's trials failed. `UserError` for a
     result without a shared fault.
     """
-    if SHARED not in {condition.name for condition in record.conditions}:
+    if SHARED not in record.titles:
         raise UserError("the result has no shared fault, so nothing says whether the repair holds.")
-    effect = next((effect for effect in record.effects if effect.condition == SHARED), None)
+    effect = record.effect(SHARED)
     text = sentence(f"{where(SHARED)}, {in_short(record, effect)}")
     return Answer(effect is not None and effect.leads and effect.sign > 0, text)
-
-
-def broken(record: AuditResult, conditions: Sequence[str]) -> dict[str, Answer]:
-    """Return which of the conditions to fail for are met: by name, each with its answer."""
-    answers = {condition: found(record, condition) for condition in conditions}
-    return {name: answer for name, answer in answers.items() if answer}

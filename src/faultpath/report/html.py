@@ -40,7 +40,7 @@ def report_page(source: ReportInput) -> str:
     }
     viewer = viewer_data(source, pairs)
     shown = viewer.shown if viewer else ()
-    titles = {condition.name: condition.title for condition in record.conditions}
+    titles = record.titles
     decided = any(effect.sign for effect in record.effects)
     why = adding(source, pairs) if decided else None
     tables = (ended(record), secondary(record), by_threshold(record))
@@ -61,6 +61,8 @@ def report_page(source: ReportInput) -> str:
         conditions=titles,
         names=(question.baseline, question.repair),
         plain=answers(record),
+        scenes_run=phrases.scenes_run(record),
+        stopping=phrases.stopping(record),
         finding=_finding(record),
         changes=[(moved.turn, phrases.change(record, moved)) for moved in record.changes],
         adding=why,
@@ -117,8 +119,8 @@ def _finding(record: AuditResult) -> list[tuple[Effect, str]]:
 
     Of an interaction only the change is decided: an effect by itself may be a point estimate.
     """
-    effects = {effect.condition: effect for effect in record.effects}
     for moved in record.changes:
-        if moved.turn == "reversal" and {moved.isolated, SHARED} <= effects.keys():
-            return [(effects[p], where(p)) for p in (moved.isolated, SHARED)]
+        if moved.turn == "reversal":
+            ends = ((record.effect(end), where(end)) for end in (moved.isolated, SHARED))
+            return [(effect, place) for effect, place in ends if effect]
     return []

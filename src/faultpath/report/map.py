@@ -10,11 +10,12 @@ from faultpath.core.text import counted
 from faultpath.report.frame import render, write_pages
 from faultpath.report.map_pictures import correlation_picture, map_picture
 from faultpath.report.sentences import wording
-from faultpath.report.sentences.maps import estimand, size_label
+from faultpath.report.sentences.maps import size_label
+from faultpath.report.sentences.phrases import scenes_like_these
 from faultpath.report.sentences.words import words
 from faultpath.report.tables import Entry, Line, Table, line
 from faultpath.report.tables.html import html
-from faultpath.report.tables.markdown import block
+from faultpath.report.tables.markdown import blocks
 from faultpath.run.provenance import RunProvenance
 from faultpath.stats.contrast import MIN_SCENES
 
@@ -37,8 +38,7 @@ def _conditions(record: MapResult) -> Table:
         for errors in ((size, 0.0), (0.0, size), (size, size)):
             entry = Entry(text="not run")
             if point := of.get(errors):
-                ends = f"[{wording.plain(point.low)}, {wording.plain(point.high)}]"
-                text = f"{wording.signed(point.difference)} {ends}"
+                text = f"{wording.signed(point.difference)} {wording.interval(point)}"
                 entry = Entry(text=text, detected=point.sign != 0)
             entries.append(entry)
         lines.append(line(size_label(facts, size), *entries))
@@ -57,15 +57,14 @@ def _conditions(record: MapResult) -> Table:
 
 
 def _flips(record: MapResult) -> Table:
-    question, facts = record.question, record.facts
-    ahead = {1: question.repair, -1: question.baseline}
+    facts = record.facts
     lines: list[Line] = []
     for flip in record.flips:
         kept = turned = "neither"
         if flip.start and flip.until is not None:
-            kept = f"{ahead[flip.start]}, {size_label(facts, flip.until)}"
+            kept = f"{record.winner(flip.start)}, {size_label(facts, flip.until)}"
         if flip.turned and flip.first is not None and flip.last is not None:
-            turned = f"{ahead[flip.turned]}, {size_label(facts, flip.first)}"
+            turned = f"{record.winner(flip.turned)}, {size_label(facts, flip.first)}"
             if abs(flip.last) < facts.up_to:
                 turned += f" to {size_label(facts, flip.last)}"
         condition = SHARED if flip.condition == SHARED else f"{flip.condition} alone"
@@ -103,7 +102,7 @@ def page(record: MapResult, provenance: RunProvenance) -> str:
         flips=Markup(html(turns[0])) if turns else "",
         flips_notes=turns[0].notes if turns else (),
         conditions=Markup(html(conditions)),
-        estimand=estimand(record.facts),
+        estimand=scenes_like_these(record.facts),
         conditions_notes=conditions.notes,
     )
 
@@ -114,11 +113,6 @@ def write_map(record: MapResult, provenance: RunProvenance, folder: Path) -> lis
         "report.html": page(record, provenance),
         "map.svg": map_picture(record).render(standalone=True) + "\n",
         "correlation.svg": correlation_picture(record).render(standalone=True) + "\n",
-        "table.md": table_markdown(record),
+        "table.md": blocks(tables(record)) + "\n",
     }
     return write_pages(pages, folder)
-
-
-def table_markdown(record: MapResult) -> str:
-    """Return all tables as Markdown."""
-    return "\n\n".join(map(block, tables(record))) + "\n"

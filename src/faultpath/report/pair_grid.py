@@ -4,13 +4,21 @@ from collections.abc import Collection, Mapping, Sequence
 from itertools import groupby
 from urllib.parse import quote
 
-from faultpath.analyses.pairs import WORDS, Pair, PairKind
+from faultpath.analyses.pairs import Pair, PairKind
 from faultpath.report.svg import Point, Svg, text_width
 
 _WIDTH, _SIDE, _GAP, _MOST_COLUMNS = 390.0, 15.0, 2.0, 25
 _LEAST, _LARGEST = 11.0, 19.0
 """Sides of a cell: its sign fits into the least."""
 _ALWAYS = (PairKind.BOTH, PairKind.REPAIR_ONLY, PairKind.BASELINE_ONLY, PairKind.NEITHER)
+
+_WORDS = {
+    PairKind.BOTH: "both succeed",
+    PairKind.REPAIR_ONLY: "only the repair succeeds",
+    PairKind.BASELINE_ONLY: "only the baseline succeeds",
+    PairKind.NEITHER: "neither succeeds",
+    PairKind.VOID: "void: a trial failed to run, or the two are not the same trial",
+}
 
 
 def pair_grid(
@@ -30,7 +38,7 @@ def pair_grid(
     what the system calls its ends. A cell whose scene and seed are among `shown` is a link to them
     in the viewer.
     """
-    summary = ", ".join(f"{k.short} {n}" for k, n in counts.items() if n or k in _ALWAYS)
+    summary = ", ".join(f"{_short(k)} {n}" for k, n in counts.items() if n or k in _ALWAYS)
     ordered = sorted(pairs, key=lambda p: (p.topology, p.index, p.scene, p.seed))
     blocks = [
         (name, [list(stack) for _, stack in groupby(block, key=lambda p: (p.index, p.scene))])
@@ -65,10 +73,14 @@ def pair_key(pairs: Sequence[Pair]) -> list[tuple[str, str]]:
     """Return the key of the grids: a small picture and its word, for each kind that occurs."""
     entries: list[tuple[str, str]] = []
     for kind in (k for k in PairKind if k in _ALWAYS or any(p.kind is k for p in pairs)):
-        svg = Svg(_SIDE, _SIDE, WORDS[kind])
+        svg = Svg(_SIDE, _SIDE, _WORDS[kind])
         _sign(svg, kind, 0.5, 0.5, _SIDE - 1)
-        entries.append((svg.render(), kind.short))
+        entries.append((svg.render(), _short(kind)))
     return entries
+
+
+def _short(kind: PairKind) -> str:
+    return kind.value.replace("-", " ")
 
 
 def address(pair: Pair) -> str:

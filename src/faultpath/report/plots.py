@@ -73,7 +73,7 @@ def plots_of(signals: Signals) -> list[Plot]:
                 break
         else:
             continue
-        title, units = topic.replace("_", " "), unit.split(", ")
+        title, units = wording.in_words(topic), unit.split(", ")
         if (count := many[topic, unit]) > 1:
             called = words.get((topic, unit), range(1, count + 1))[part]
             title, unit = f"{title}, {called}", units[part] if len(units) == count else unit

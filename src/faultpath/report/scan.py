@@ -10,11 +10,11 @@ from faultpath.core.text import counted
 from faultpath.report.frame import render, write_pages
 from faultpath.report.scan_pictures import letters, strip, triangle
 from faultpath.report.sentences import wording
-from faultpath.report.sentences.scan import in_words, named, of_pair, size
+from faultpath.report.sentences.scan import named, of_pair, size
 from faultpath.report.sentences.words import words
 from faultpath.report.tables import Entry, Line, Table, line
 from faultpath.report.tables.html import html
-from faultpath.report.tables.markdown import block
+from faultpath.report.tables.markdown import blocks
 from faultpath.run.provenance import RunProvenance
 
 
@@ -129,7 +129,7 @@ def _together(record: ScanResult) -> Table:
             for version in record.versions
             for rate in (version.together[at].none, version.together[at].success)
         ]
-        lines.append(line(f"{in_words(errors[0].source)} {sizes}", where, *rates))
+        lines.append(line(f"{wording.in_words(errors[0].source)} {sizes}", where, *rates))
     return Table(
         name="together",
         title="Success with one source wrong at several readers, %",
@@ -186,7 +186,7 @@ def write_scan(record: ScanResult, provenance: RunProvenance, folder: Path) -> l
         if version.singles:
             name = "scan.svg" if number == 1 else f"scan-{number}.svg"
             pages[name] = triangle(record, version).render(standalone=True) + "\n"
-    pages["table.md"] = table_markdown(record)
+    pages["table.md"] = blocks(every_table(record)) + "\n"
     return write_pages(pages, folder)
 
 
@@ -220,8 +220,3 @@ def page(record: ScanResult, provenance: RunProvenance) -> str:
         versions=versions,
         tables=[(table, Markup(html(table, caption=False))) for table in every],
     )
-
-
-def table_markdown(record: ScanResult) -> str:
-    """Return all tables as Markdown."""
-    return "\n\n".join(map(block, every_table(record))) + "\n"

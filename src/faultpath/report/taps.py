@@ -9,6 +9,7 @@ from faultpath.analyses.model import CORRECT
 from faultpath.core.text import series
 from faultpath.interface import module_of
 from faultpath.report.inputs import ReportInput
+from faultpath.report.sentences.wording import in_words
 from faultpath.report.svg import Svg
 
 Tap = tuple[str, str]
@@ -39,7 +40,7 @@ class Reader:
         names = {channel for channel, _ in self.taps}
         what = "readings" if len(names) > 1 else "reading"
         if len(names) == 1 and len(min(names)) <= _SHORT:
-            what = _named(min(names))
+            what = in_words(min(names))
         if not self.taps:
             return "does not read it"
         if not self.faulted:
@@ -108,14 +109,14 @@ def fork_panel(fork: Fork) -> str:
     """Return the picture of a condition."""
     description = " ".join(
         f"{role.capitalize()} {name}: "
-        + series([f"{_named(reader.module)} {reader.state}" for reader in readers])
+        + series([f"{in_words(reader.module)} {reader.state}" for reader in readers])
         + "."
         for role, name, readers in fork.variants
     )
     bottom = _MODULES + _PITCH * len(fork.variants[0][2])
     svg = Svg(_WIDTH, bottom, f"{fork.title}: who gets the fault", description)
     svg.text(0, 14, fork.title, "head", room=_WIDTH)
-    names = ", ".join(map(_named, fork.channels))
+    names = ", ".join(map(in_words, fork.channels))
     wrong = " wrong" if fork.everywhere else ""
     state = "wrong for all" if fork.everywhere else "correct at the source"
     for x, (role, name, readers) in zip(
@@ -147,12 +148,8 @@ def _branch(svg: Svg, x: float, y: float, reader: Reader, everywhere: bool) -> N
         if hit:
             svg.path(f"M{x + _TAP + 2} {y - 4}l-4 4.5h4l-4 4.5", "bolt")
     cls = "bold" if reader.taps else "bold soft"
-    svg.text(box + 6, y - 3, _named(reader.module), cls, room=room)
+    svg.text(box + 6, y - 3, in_words(reader.module), cls, room=room)
     cls = "small faulted" if reader.faulted else "small soft"
     taps = sorted(reader.faulted or reader.taps)
     tip = f"{reader.state}: {', '.join(f'{channel} at {at}' for channel, at in taps)}"
     svg.text(box + 6, y + 12, reader.state, cls, tip=tip, room=room)
-
-
-def _named(module: str) -> str:
-    return module.replace("_", " ")

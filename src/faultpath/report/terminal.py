@@ -17,6 +17,7 @@ from faultpath.report.sentences.phrases import (
     for_trainings,
     in_trials_that_ran,
     not_standing,
+    stopping,
 )
 from faultpath.report.sentences.words import words
 from faultpath.report.tables import Line, Table, line
@@ -32,16 +33,16 @@ def decision(record: AuditResult, details: bool = False) -> RenderableType:
 
     `details` adds every sentence of the record, and what would change it.
     """
-    question, said = record.question, words(record)
+    question, text = record.question, words(record)
     void = any(effect.void for effect in record.effects)
     names = [name for name in _EFFECTS if void or name != "void"]
     success = by_quantity(record, ("baseline", "repair"))
     effects = by_condition(record, names, f"{question.repair} minus {question.baseline}")
-    parts: list[RenderableType] = [Text(said.headline, style="bold")]
+    parts: list[RenderableType] = [Text(text.headline, style="bold")]
     if fault := wording.faults(record.facts):
         parts += [Text(f"Fault: {fault}.", style="dim")]
-    if record.stopping:
-        parts += [Text(f"A sequential audit: {record.stopping}.")]
+    if how := stopping(record):
+        parts += [Text(f"A sequential audit: {how}.")]
     parts += [Text(""), Parted(success), Text(""), Parted(effects)]
     if any(share.result.kind in ("interval", "two pieces") for share in record.break_even):
         explained = (
@@ -59,21 +60,21 @@ def decision(record: AuditResult, details: bool = False) -> RenderableType:
     table = by_threshold(record)
     if table is not None:
         parts += [Text(""), drawn(table)]
-    parts += _list("Found in the run", said.findings, "bold red")
+    parts += _list("Found in the run", text.findings, "bold red")
     if details:
         if any(effect.mcnemar_p is not None for effect in record.effects):
             parts += [Text(""), Parted(by_condition(record, ("p", "mcnemar", "holm")))]
-        parts += [Text(""), *map(Text, said.sentences)]
+        parts += [Text(""), *map(Text, text.sentences)]
         parts += _list("What would change this", tuple(would_change(record)), "bold")
     return Group(*parts)
 
 
 def conclusion(record: MapResult | ScanResult, tables: Iterable[Table]) -> RenderableType:
     """Return headline, sentences, findings and tables of a map or a scan."""
-    said = words(record)
-    parts: list[RenderableType] = [Text(said.headline, style="bold"), Text("")]
-    parts += map(Text, said.sentences)
-    parts += [Text(f"Found in the run: {finding}", style="bold red") for finding in said.findings]
+    text = words(record)
+    parts: list[RenderableType] = [Text(text.headline, style="bold"), Text("")]
+    parts += map(Text, text.sentences)
+    parts += [Text(f"Found in the run: {finding}", style="bold red") for finding in text.findings]
     for table in tables:
         parts += [Text(""), Parted(table), *map(Text, table.notes)]
     return Group(*parts)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.analyses.examples import captions, choose
+from faultpath.analyses.examples import alike, choose
 from faultpath.analyses.model import SHARED, AuditResult
 from faultpath.analyses.pairs import Pair, by_scene, is_sample
 from faultpath.analyses.parting import Heard, parting
@@ -90,6 +90,22 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
     }
     whole = len(groups) == len(every)
     return Viewer(space, frozenset(groups), whole, pack(content, trials.series))
+
+
+def captions(pairs: Sequence[Pair], sampled: bool = False) -> dict[tuple[str, int], str]:
+    """Say of each scene and seed in how many the same versions succeed under every condition, and
+    whether it is typical of them."""
+    groups = alike(pairs)
+    scenes, seeds = ({at[part] for at in groups} for part in (0, 1))
+    of = f"{len(scenes)} {'sampled scenes' if sampled else 'scenes'}"
+    if len(seeds) > 1:
+        of = f"{len(groups)} ({of}, {len(seeds)} seeds)"
+    typical = " It is a typical one: its trials end apart at the median time of these."
+    return {
+        at: f"{count} of {of} {'goes' if count == 1 else 'go'} like this one: the same versions "
+        f"succeed under each condition.{typical if is_typical else ''}"
+        for at, (count, is_typical) in groups.items()
+    }
 
 
 def _scenes(

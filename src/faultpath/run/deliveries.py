@@ -31,8 +31,6 @@ class Deliveries(Result):
     rows: tuple[RowDeliveries, ...] = ()
     findings: tuple[Finding, ...] = ()
     """What a reader of the run's results has to know."""
-    repeats: bool = True
-    """Whether all trials that ran a second time came out the same."""
 
     @classmethod
     def of(
@@ -41,7 +39,6 @@ class Deliveries(Result):
         treatments: Mapping[TreatmentPart, tuple[TapCount, ...]],
         trials: Trials,
         findings: tuple[Finding, ...],
-        repeats: bool = True,
     ) -> Self:
         """Lay the counts out in the order of the plan's rows.
 
@@ -60,7 +57,6 @@ class Deliveries(Result):
         return cls(
             rows=rows,
             findings=(*findings, *unread(reads), *unproven(trials.met())),
-            repeats=repeats,
         )
 
     def at(self, variant: str, condition: str) -> tuple[TapCount, ...]:

@@ -89,9 +89,9 @@ class Unpaired(Result):
     """Further pairs that are none, for the same reason."""
 
     @classmethod
-    def of(cls, every: Sequence["Unpaired"]) -> tuple["Unpaired", ...]:
+    def first_of(cls, pairs: Sequence["Unpaired"]) -> tuple["Unpaired", ...]:
         """Return one finding that counts all and shows the first; nothing without any."""
-        return tuple(one.model_copy(update={"others": len(every) - 1}) for one in every[:1])
+        return tuple(pair.model_copy(update={"others": len(pairs) - 1}) for pair in pairs[:1])
 
     def __str__(self) -> str:
         """Return a sentence that counts the pairs and shows the first."""

@@ -14,7 +14,7 @@ from faultpath.analyses.map.decide import decided
 from faultpath.analyses.map.lattice import COARSE, Point, lattice
 from faultpath.analyses.map.model import MapFacts, MapResult
 from faultpath.analyses.map.surface import Differences, next_points
-from faultpath.analyses.model import CORRECT, Invalid
+from faultpath.analyses.model import CORRECT
 from faultpath.analyses.planning import rows_of, scenes_of, two_variants
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed
@@ -74,13 +74,8 @@ class MapAnalysis(Analysis[list[Point]]):
         `UserError` where a point has no pair left.
         """
         differences, unpaired = self.differences(sorted(items), trials)
-        findings = (*Unpaired.of(unpaired), *deliveries.findings)
-        invalid: Invalid | None = "unpaired" if unpaired else None
-        if not deliveries.repeats:
-            invalid = "unrepeatable"
-        return decided(
-            self.question, self.facts, differences, int(trials.failed.sum()), findings, invalid
-        )
+        findings = (*Unpaired.first_of(unpaired), *deliveries.findings)
+        return decided(self.question, self.facts, differences, int(trials.failed.sum()), findings)
 
     def condition(self, point: Point) -> str:
         """Return what rows of a point are called in the outcome table."""

@@ -23,7 +23,7 @@ from faultpath.analyses.map.surface import (
     sign_of,
     simultaneous,
 )
-from faultpath.analyses.model import Invalid
+from faultpath.analyses.model import invalid_by
 from faultpath.run.findings import Finding
 from faultpath.run.question import MapQuestion
 from faultpath.stats.estimate import Sign
@@ -35,18 +35,18 @@ def decided(
     differences: Differences,
     failed: int = 0,
     findings: Sequence[Finding] = (),
-    invalid: Invalid | None = None,
 ) -> MapResult:
     """Return the record of differences, which may be simulated ones.
 
     What is said rests on the pairs of errors that were run alone: between them the surface is
-    interpolated, and its bands leave out the error of that. Where the trials are `invalid`, nothing
-    is significant.
+    interpolated, and its bands leave out the error of that. Where `findings` say that no result
+    follows, nothing is significant.
     """
     points, between = np.eye(len(differences.points)), surface_weights(differences.points)
     # One critical value for all places that are shown.
     z = simultaneous(np.concatenate([points, between]), differences, facts.library_hash)
     at, surface = Combined.of(points, differences), Combined.of(between, differences)
+    invalid = invalid_by(findings)
     decided, shaded = (part.signs(z) * (invalid is None) for part in (at, surface))
     signs = dict(zip(differences.points, decided.tolist(), strict=True))
     side = 2 * UNITS // SHOWN + 1

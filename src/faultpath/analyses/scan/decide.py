@@ -6,7 +6,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from faultpath.analyses.model import CORRECT, Invalid
+from faultpath.analyses.model import CORRECT, invalid_by
 from faultpath.analyses.scan.errors import Scanned, label
 from faultpath.analyses.scan.model import (
     FirstStage,
@@ -109,9 +109,8 @@ def concluded(
     """
     unpaired: list[Unpaired] = []
     versions = [_version(name, scanned, trials, unpaired) for name in question.variants]
-    invalid: Invalid | None = "unpaired" if unpaired else None
-    if not deliveries.repeats:
-        invalid = "unrepeatable"
+    findings = (*Unpaired.first_of(unpaired), *deliveries.findings)
+    invalid = invalid_by(findings)
     if invalid:
         versions = [_without_claims(version) for version in versions]
     return ScanResult(
@@ -125,7 +124,7 @@ def concluded(
         versions=tuple(versions),
         invalid=invalid,
         failed=int(trials.failed.sum()),
-        findings=(*Unpaired.of(unpaired), *deliveries.findings),
+        findings=findings,
     )
 
 

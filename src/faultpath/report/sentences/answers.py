@@ -46,7 +46,7 @@ def _answers(record: AuditResult) -> dict[str, list[str]]:
     least = record.testing.scenes_needed
     if record.invalid:
         return {"Left open": [_WHY_NO_RESULT[record.invalid]]}
-    sure = [*reach(record), *phrases.hardly_acted(record)]
+    sure = [*reach(record), *_hardly_acted(record)]
     if record.few:
         few = (
             f"Too few scenes: {counted(record.scenes, 'scene')} compared, and no difference can be "
@@ -71,11 +71,9 @@ def _follows(record: AuditResult) -> Iterator[str]:
     leading = [effect for effect in tested if effect.leads]
     disagree = {effect.sign for effect in leading} == {1, -1}
     if not leading:
-        if any(effect.sign and effect.uneven for effect in tested):
-            (first, *_) = (effect for effect in tested if effect.sign and effect.uneven)
-            yield (
-                f"No choice can rest on what is significant: {phrases.failed_more(record, first)}."
-            )
+        if uneven := [effect for effect in tested if effect.sign and effect.uneven]:
+            failed = phrases.failed_more(record, uneven[0])
+            yield f"No choice can rest on what is significant: {failed}."
         elif any(effect.sign for effect in tested):
             yield "What is significant lies at the floor or ceiling: no choice can rest on it."
         elif tested and all(record.is_small(effect) for effect in tested):
@@ -113,7 +111,7 @@ def _follows(record: AuditResult) -> Iterator[str]:
 
 def _unknown(record: AuditResult) -> str:
     """Say that no choice follows, and which differences the primary contrast leaves possible."""
-    main = next((e for e in record.effects if e.condition == record.facts.primary), None)
+    main = record.effect(record.facts.primary)
     text = "Not enough is known to prefer either"
     if main is None or not main.acted or main.low is None or main.high is None:
         return f"{text}."
@@ -142,6 +140,22 @@ def reach(record: AuditResult) -> Iterator[str]:
     if run > 1 and facts.unit == "scene" and record.effects and len(record.effects[0].won) == 1:
         yield f"All {run} seeds gave the same outcome in every trial: together they count as one."
     yield from _stopped(record)
+
+
+def _hardly_acted(record: AuditResult) -> Iterator[str]:
+    """Name the versions in which the fault changed nothing in most of the trials."""
+    acted = {effect.condition for effect in record.effects if effect.acted}
+    faulted = {
+        condition.name: (condition.baseline_readers, condition.readers)
+        for condition in record.conditions
+    }
+    for count in record.counts:
+        readers = faulted[count.condition][count.variant == record.question.repair]
+        if count.condition in acted and readers and 2 * count.altered_trials < count.trials:
+            yield (
+                f"{capital(where(count.condition))}, the fault changed something in only "
+                f"{count.altered_trials} of {count.trials} trials of {count.variant}."
+            )
 
 
 def _stopped(record: AuditResult) -> Iterator[str]:

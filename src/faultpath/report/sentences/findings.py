@@ -28,12 +28,12 @@ def of_audit(record: AuditResult) -> tuple[str, ...]:
         *_without_pairs(record),
         *_failed_trials(record),
         *_partly_measured(record),
-        *map(said, record.findings),
+        *map(describe, record.findings),
         *([phrases.earlier_analyses(record)] if record.earlier else ()),
     )
 
 
-def said(finding: Finding) -> str:
+def describe(finding: Finding) -> str:
     """Return a finding as a sentence or two."""
     match finding:
         case Unpaired() | Unproven() | Unread():
@@ -101,10 +101,9 @@ def _recheck(finding: Recheck) -> str:
 
 
 def _without_pairs(record: AuditResult) -> Iterator[str]:
-    compared = {effect.condition for effect in record.effects}
-    for condition in record.conditions:
-        if condition.name not in compared:
-            yield f"{phrases.no_pair(condition.name)}: the table shows what failed."
+    for condition in record.titles:
+        if record.effect(condition) is None:
+            yield f"{phrases.no_pair(condition)}: the table shows what failed."
 
 
 def _failed_trials(record: AuditResult) -> Iterator[str]:

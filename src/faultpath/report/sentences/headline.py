@@ -7,11 +7,10 @@ from collections.abc import Sequence
 
 from faultpath.analyses.effects import Effect
 from faultpath.analyses.model import CORRECT, SHARED, AuditResult, where
-from faultpath.core.text import capital
+from faultpath.core.text import capital, counted
 from faultpath.report.sentences.phrases import (
     NO_RESULT,
     failed_more,
-    in_few_scenes,
     margin,
     no_pair,
     places,
@@ -24,7 +23,7 @@ def headline(record: AuditResult) -> str:
     if record.invalid:
         return NO_RESULT[record.invalid]
     primary = record.facts.primary
-    main = next((effect for effect in record.effects if effect.condition == primary), None)
+    main = record.effect(primary)
     tested = [effect for effect in record.effects if effect.acted]
     if main is None:
         return f"{no_pair(primary)}."
@@ -57,7 +56,9 @@ def _few_scenes(record: AuditResult) -> str:
         return ""
     least = min(few, key=lambda effect: sum(effect.ahead))
     at = f"{where(least.condition)} " if len(leading) > 1 else ""
-    return f" ({at}{in_few_scenes(least)})"
+    more, less = sorted(least.ahead, reverse=True)
+    never = "never the other way" if not less else f"the other way in {less}"
+    return f" ({at}in {counted(more, 'scene')}, {never})"
 
 
 def reversed_at(record: AuditResult) -> list[Effect]:

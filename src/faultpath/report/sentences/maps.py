@@ -5,14 +5,9 @@ from collections.abc import Iterator, Sequence
 from faultpath.analyses.map.lattice import SHARED
 from faultpath.analyses.map.model import Flip, MapFacts, MapPoint, MapResult
 from faultpath.core.text import series
-from faultpath.report.sentences.phrases import NO_RESULT
-from faultpath.report.sentences.wording import MINUS, plain, signed
+from faultpath.report.sentences.phrases import NO_RESULT, scenes_like_these
+from faultpath.report.sentences.wording import MINUS, interval, signed
 from faultpath.stats.contrast import MIN_SCENES
-
-
-def estimand(facts: MapFacts) -> str:
-    """Return what everything speaks of."""
-    return "new scenes like these" + (", for these trained models" if facts.trained else "")
 
 
 def size_label(facts: MapFacts, size: float) -> str:
@@ -55,8 +50,8 @@ def sentences(record: MapResult) -> tuple[str, ...]:
         return (_distribution(record),)
     ahead = {sign: sum(point.sign == sign for point in record.points) for sign in (-1, 1)}
     return (
-        f"What is significant holds for {estimand(record.facts)}, at the pairs of errors that were "
-        "run.",
+        f"What is significant holds for {scenes_like_these(record.facts)}, at the pairs of errors "
+        "that were run.",
         f"Of {run} pairs of errors run, {record.winner(-1)} is significantly ahead at {ahead[-1]} "
         f"and {record.winner(1)} at {ahead[1]}; at {run - ahead[-1] - ahead[1]} neither.",
         *_reversals(record),
@@ -72,9 +67,8 @@ def _expected(record: MapResult) -> str:
     texts: list[str] = []
     for expectation in record.joint.requested:
         other = f"with a correlation of {expectation.correlation:g}".replace("-", MINUS)
-        ends = f"[{plain(expectation.low)}, {plain(expectation.high)}]"
         where = correlated.get(expectation.correlation, other)
-        texts.append(f"{signed(expectation.value)} pp {ends} {where}")
+        texts.append(f"{signed(expectation.value)} pp {interval(expectation)} {where}")
     return (
         f"The map, interpolated between the pairs that were run, averages to {series(texts)}; "
         "these intervals leave out the error of interpolating, so nothing is concluded from them."
@@ -160,5 +154,4 @@ def at_point(record: MapResult, point: MapPoint) -> str:
     named = zip(record.facts.modules, sizes, strict=True)
     pair = ", ".join(f"{module} {size}" for module, size in named)
     decided = f"{record.winner(point.sign)} ahead" if point.sign else "not significant"
-    interval = f"[{plain(point.low)}, {plain(point.high)}]"
-    return f"{pair}: {signed(point.difference)} pp {interval}, {decided}"
+    return f"{pair}: {signed(point.difference)} pp {interval(point)}, {decided}"

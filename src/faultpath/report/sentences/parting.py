@@ -4,7 +4,7 @@ from faultpath.analyses.facts import ComparisonFacts
 from faultpath.analyses.model import where
 from faultpath.analyses.parting import Difference, Ended, Kind, Parting
 from faultpath.core.text import capital, one_line, series
-from faultpath.report.sentences.wording import MINUS, ended, unit
+from faultpath.report.sentences.wording import MINUS, ended, in_words, unit
 from faultpath.system.outcome import control_steps
 
 DIFFERS: dict[Kind, str] = {
@@ -76,7 +76,7 @@ def _beginning(kind: Kind, at: Difference, one: Ended, other: Ended) -> str:
     """Return the clause on the first difference of all, with both values."""
     values, unit_of = _values(at), "" if at.unit in ("", "1") else f" {unit(at.unit)}"
     old, new = values
-    name = at.name.replace("_", " ")
+    name = in_words(at.name)
     if at.component is not None:
         name += f" ({at.part or f'component {at.component}'})"
     of, under = f" of {other.variant}", ""
@@ -85,7 +85,7 @@ def _beginning(kind: Kind, at: Difference, one: Ended, other: Ended) -> str:
     more = f" (and {at.others} more)" if at.others else ""
     begin = f"at {_time(at.time_s)} s{under}"
     if kind == "reading":
-        readers = f"the {series([module.replace('_', ' ') for module in at.modules])}{of}"
+        readers = f"the {series([*map(in_words, at.modules)])}{of}"
         if at.delivered:
             return f"{begin} {readers} got {new}{unit_of} for {name} instead of {old}{more}"
         verb = "reads" if len(at.modules) == 1 else "read"
@@ -111,7 +111,7 @@ def _alone(one: Ended, other: Ended, parting: Parting) -> str:
     """Return a sentence for each version that has modules of its own."""
     return "".join(
         f" Only {end.variant} has the module{'s' if len(modules) > 1 else ''} "
-        f"{series([name.replace('_', ' ') for name in modules])}."
+        f"{series([*map(in_words, modules)])}."
         for end, modules in zip((one, other), parting.alone, strict=True)
         if modules
     )

@@ -3,10 +3,10 @@
 from collections.abc import Iterator, Sequence
 
 from faultpath.analyses.effects import Change, Effect
-from faultpath.analyses.facts import ComparisonFacts, Question
+from faultpath.analyses.facts import ComparisonFacts, Facts, Question
 from faultpath.analyses.model import CORRECT, SHARED, AuditResult, Invalid, where
-from faultpath.core.text import capital, counted, series
-from faultpath.report.sentences.wording import interval, p_value, signed, with_interval
+from faultpath.core.text import capital, series
+from faultpath.report.sentences.wording import interval, p_equals, p_value, signed, with_interval
 from faultpath.stats.distributions import sign_p_value
 
 NO_RESULT: dict[Invalid, str] = {
@@ -16,13 +16,18 @@ NO_RESULT: dict[Invalid, str] = {
 """Headlines of results in which nothing can be significant."""
 
 
+def scenes_like_these(facts: Facts) -> str:
+    """Return what a result of given models holds for."""
+    return "new scenes like these" + (", for these trained models" if facts.trained else "")
+
+
 def estimand(question: Question, facts: ComparisonFacts) -> str:
     """Return what intervals and tests speak of."""
     if question.generalise == "models":
         return "new scenes like these and models newly trained with other seeds"
     if facts.unit == "task":
         return "new tasks like these"
-    return "new scenes like these" + (", for these trained models" if facts.trained else "")
+    return scenes_like_these(facts)
 
 
 _TESTS = {
@@ -41,10 +46,9 @@ _TESTS = {
 
 def tests(record: AuditResult) -> str:
     """Return which tests gave which p-values, with a sentence on each; empty where none did."""
-    titles = {condition.name: condition.title for condition in record.conditions}
     by_name: dict[str, list[str]] = {}
     for effect in record.effects:
-        title = titles.get(effect.condition, effect.condition)
+        title = record.titles[effect.condition]
         by_name.setdefault(effect.test, []).append(f"{title} {p_value(effect.p_value)}")
     said: list[str] = []
     for name, values in by_name.items():
@@ -63,8 +67,8 @@ def adjusted(record: AuditResult, difference: Effect | Change) -> str:
     """Return `p = 0.250 after Holm`; nothing where nothing was tested."""
     if difference.corrected_p is None:
         return ""
-    p = p_value(difference.corrected_p)
-    return f"p {p if p.startswith('<') else f'= {p}'} {record.facts.family}"
+    family = "after Holm" if record.facts.order is None else "within the family"
+    return f"{p_equals(difference.corrected_p)} {family}"
 
 
 def only_alone(difference: Effect | Change) -> bool:
@@ -74,75 +78,11 @@ def only_alone(difference: Effect | Change) -> bool:
     return tested and (low > 0 or high < 0)
 
 
-def in_few_scenes(effect: Effect) -> str:
-    """Return in how many scenes the version that is ahead is so, and in how many the other one."""
-    more, less = sorted(effect.ahead, reverse=True)
-    never = "never the other way" if not less else f"the other way in {less}"
-    return f"in {counted(more, 'scene')}, {never}"
-
-
-def trainings(record: AuditResult, effect: Effect) -> str:
-    """Return in how many trainings which version is ahead, with a sign test's p-value: it holds
-    whatever the distribution of trainings."""
-    values = effect.per_seed
-    repair, baseline = sum(value > 0 for value in values), sum(value < 0 for value in values)
-    ahead = record.winner(1 if repair >= baseline else -1)
-    p = p_value(sign_p_value(repair, baseline))
-    even = len(values) - repair - baseline
-    return (
-        f"{capital(where(effect.condition))}, {ahead} is ahead in {max(repair, baseline)} of "
-        f"{len(values)} trainings{f', neither in {even}' if even else ''}, "
-        f"p {p if p.startswith('<') else f'= {p}'}"
-    )
-
-
-def for_trainings(record: AuditResult) -> Iterator[str]:
-    """Say on what a result for newly trained models rests."""
-    if record.question.generalise != "models" or record.invalid:
-        return
-    run = min((len(effect.per_seed) for effect in record.effects), default=0)
-    yield (
-        f"{run} trainings stand for new ones as far as trainings spread evenly around their "
-        "mean, as a Gaussian does: a rare collapse that none of them had is not seen."
-    )
-    for effect in record.effects:
-        yield f"{trainings(record, effect)} (sign test, whatever their distribution)."
-
-
 def failed_more(record: AuditResult, effect: Effect) -> str:
     """Say which version's trials failed more often than chance explains."""
     missing, question = effect.missing, record.question
     more = missing is not None and missing.repair > missing.baseline
     return f"trials of {question.repair if more else question.baseline} failed more often"
-
-
-def in_trials_that_ran(record: AuditResult) -> Iterator[str]:
-    """Say what the trials that ran show where only those that failed stand in the way."""
-    yield from (_ran(record, effect) for effect in record.effects if effect.unsettled)
-
-
-def _ran(record: AuditResult, effect: Effect) -> str:
-    missing, question = effect.missing, record.question
-    assert missing is not None
-    ahead = record.winner(1 if effect.value > 0 else -1)
-    text = (
-        f"{capital(where(effect.condition))}, the trials that ran favour {ahead} "
-        f"({with_interval(effect)} pp, {adjusted(record, effect)}), which holds if failing "
-        "has nothing to do with how a trial would have ended"
-    )
-    if missing.reruns is None:
-        return f"{text}."
-    of = zip(missing.reruns, (question.repair, question.baseline), strict=True)
-    needed = series([f"{count} of {name}" for count, name in of if count])
-    how = (
-        "add their outcomes to the results"
-        if record.facts.judged
-        else "the same command tries them again"
-    )
-    return (
-        f"{text}; otherwise at least {needed} that failed have to run, and come out as the others "
-        f"did ({how})."
-    )
 
 
 def places(effects: Sequence[Effect]) -> str:
@@ -224,22 +164,6 @@ def not_standing(record: AuditResult) -> Iterator[str]:
         )
 
 
-def hardly_acted(record: AuditResult) -> Iterator[str]:
-    """Name the versions in which the fault changed nothing in most of the trials."""
-    acted = {effect.condition for effect in record.effects if effect.acted}
-    faulted = {
-        condition.name: (condition.baseline_readers, condition.readers)
-        for condition in record.conditions
-    }
-    for count in record.counts:
-        readers = faulted[count.condition][count.variant == record.question.repair]
-        if count.condition in acted and readers and 2 * count.altered_trials < count.trials:
-            yield (
-                f"{capital(where(count.condition))}, the fault changed something in only "
-                f"{count.altered_trials} of {count.trials} trials of {count.variant}."
-            )
-
-
 def earlier_analyses(record: AuditResult) -> str:
     """Say what was concluded before, and what that does to what is significant now."""
     earlier = record.earlier
@@ -250,4 +174,75 @@ def earlier_analyses(record: AuditResult) -> str:
         f"This audit was concluded before{with_scenes}, led by {primaries}: after such a look, "
         "more than 5 % of audits would report a difference between equally good versions. Run it "
         "in scenes that no audit has looked at, or with --stop-when, which allows for looks."
+    )
+
+
+def for_trainings(record: AuditResult) -> Iterator[str]:
+    """Say on what a result for newly trained models rests, and in how many trainings which version
+    is ahead, by a sign test: that holds whatever the distribution of trainings."""
+    if record.question.generalise != "models" or record.invalid:
+        return
+    run = min((len(effect.per_seed) for effect in record.effects), default=0)
+    yield (
+        f"{run} trainings stand for new ones as far as trainings spread evenly around their "
+        "mean, as a Gaussian does: a rare collapse that none of them had is not seen."
+    )
+    for effect in record.effects:
+        values = effect.per_seed
+        repair, baseline = sum(value > 0 for value in values), sum(value < 0 for value in values)
+        even = len(values) - repair - baseline
+        yield (
+            f"{capital(where(effect.condition))}, {record.winner(1 if repair >= baseline else -1)} "
+            f"is ahead in {max(repair, baseline)} of {len(values)} trainings"
+            f"{f', neither in {even}' if even else ''}, "
+            f"{p_equals(sign_p_value(repair, baseline))} (sign test, whatever their distribution)."
+        )
+
+
+def in_trials_that_ran(record: AuditResult) -> Iterator[str]:
+    """Say what the trials that ran show where only those that failed stand in the way."""
+    question = record.question
+    for effect in record.effects:
+        if not effect.unsettled or effect.missing is None:
+            continue
+        text = (
+            f"{capital(where(effect.condition))}, the trials that ran favour "
+            f"{record.winner(1 if effect.value > 0 else -1)} ({with_interval(effect)} pp, "
+            f"{adjusted(record, effect)}), which holds if failing has nothing to do with how a "
+            "trial would have ended"
+        )
+        if effect.missing.reruns is not None:
+            of = zip(effect.missing.reruns, (question.repair, question.baseline), strict=True)
+            needed = series([f"{count} of {name}" for count, name in of if count])
+            how = "the same command tries them again"
+            if record.facts.judged:
+                how = "add their outcomes to the results"
+            text += (
+                f"; otherwise at least {needed} that failed have to run, and come out as the "
+                f"others did ({how})"
+            )
+        yield f"{text}."
+
+
+def scenes_run(record: AuditResult) -> str:
+    """Return the number of scenes, and of how many where an audit could have taken more."""
+    most = str(record.facts.n_scenes)
+    if record.stopped is None or record.stopped.scenes == record.facts.n_scenes:
+        return most
+    return f"{record.stopped.scenes} of at most {most}"
+
+
+def stopping(record: AuditResult) -> str:
+    """Return how a sequential audit was to stop; empty for one that is not."""
+    order, margin_pp = record.facts.order, record.question.margin_pp
+    if order is None:
+        return ""
+    every = record.question.stop_when == "all-decided"
+    what = "every effect" if every else "the primary contrast"
+    small = f" or shown to be smaller than {margin_pp:g} pp" if margin_pp else ""
+    return (
+        f"the audit was to stop once {what} is significant{small}, at a look after every "
+        f"{'scene' if order.per_analysis == 1 else f'{order.per_analysis} scenes'}, or after "
+        f"{record.facts.n_scenes}; the order of its scenes was drawn beforehand from the hash "
+        f"of the library and the seed {order.seed}"
     )

@@ -7,8 +7,8 @@ from faultpath.analyses.effects import FLOOR_PERCENT
 from faultpath.analyses.scan.model import ScanError, ScannedPair, ScannedVersion, ScanResult
 from faultpath.core.text import capital, counted, series
 from faultpath.faults import FaultText
-from faultpath.report.sentences.phrases import NO_RESULT
-from faultpath.report.sentences.wording import MINUS, unit
+from faultpath.report.sentences.phrases import NO_RESULT, scenes_like_these
+from faultpath.report.sentences.wording import MINUS, in_words, unit
 from faultpath.stats.estimate import ALPHA
 
 HELPS = ALPHA / 2
@@ -25,11 +25,6 @@ def size(error: ScanError) -> str:
     shown = f"{text}{ending}".replace("-", MINUS).removesuffix(" 1").rstrip()
     options = FaultText.read(error.fault).options
     return ", ".join([shown, *(f"{name}={value}" for name, value in options.items())])
-
-
-def in_words(name: str) -> str:
-    """Return the name of a source as part of a sentence."""
-    return name.replace("_", " ")
 
 
 def named(error: ScanError) -> str:
@@ -208,10 +203,9 @@ def _failed(record: ScanResult) -> Iterator[str]:
 
 
 def _limits(record: ScanResult) -> str:
-    models = ", for these trained models" if record.facts.trained else ""
     apart = " Versions are tested separately." if len(record.versions) > 1 else ""
     return (
-        f"What is listed holds for new scenes like these{models}, at these sizes. Nothing is "
+        f"What is listed holds for {scenes_like_these(record.facts)}, at these sizes. Nothing is "
         f"claimed of other pairs, nor that any errors add up.{apart}"
     )
 

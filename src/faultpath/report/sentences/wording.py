@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from faultpath.analyses.effects import Difference, Effect
 from faultpath.analyses.facts import ComparisonFacts
+from faultpath.analyses.map.model import Expectation, MapPoint
 from faultpath.analyses.shares import first, last
 from faultpath.core.text import capital
 from faultpath.stats.estimate import BreakEven, Estimate
@@ -28,7 +29,7 @@ def plain(value: float, digits: int = 1) -> str:
     return (text.removeprefix("-") if float(text) == 0.0 else text).replace("-", MINUS)
 
 
-def interval(estimate: Estimate | Difference, digits: int = 1) -> str:
+def interval(estimate: Estimate | Difference | MapPoint | Expectation, digits: int = 1) -> str:
     """Return `[−16.0, −4.0]`, or nothing where no interval exists."""
     if estimate.low is None or estimate.high is None:
         return ""
@@ -61,6 +62,12 @@ def p_value(value: float) -> str:
     return f"{value:.4f}" if text == "0.050" and value != 0.05 else text
 
 
+def p_equals(value: float) -> str:
+    """Return `p = 0.032`, or `p < 0.001`."""
+    p = p_value(value)
+    return f"p {p}" if p.startswith("<") else f"p = {p}"
+
+
 def break_even(result: BreakEven) -> str:
     """Return the frequencies at which nobody is decided to be ahead, in percent.
 
@@ -74,16 +81,6 @@ def break_even(result: BreakEven) -> str:
         return "any"
     pieces = " and ".join(f"[{last(low)}, {first(high)}]" for low, high in result.pieces)
     return pieces if result.p_star is None else f"{100.0 * result.p_star:.0f} {pieces}"
-
-
-def percent(fraction: float) -> str:
-    """Return a fraction as whole percent, without the sign."""
-    return f"{100.0 * fraction:.0f}"
-
-
-def adjusted(effect: Effect) -> str:
-    """Return an effect's p-value within its family; a dash where it is in none."""
-    return "–" if effect.corrected_p is None else p_value(effect.corrected_p)
 
 
 def reservation(effect: Effect) -> str:
@@ -110,6 +107,11 @@ def faults(facts: ComparisonFacts) -> str:
 def unit(name: str) -> str:
     """Return a unit with its exponents raised: `m/s²` for `m/s^2`."""
     return re.sub(r"\^(-?\d)", lambda match: match[1].translate(_RAISED), name)
+
+
+def in_words(name: str) -> str:
+    """Return the name of a module, a source or a signal as part of a sentence."""
+    return name.replace("_", " ")
 
 
 def sentence(words: str) -> str:

@@ -36,9 +36,15 @@ def words(result: AuditResult | MapResult | ScanResult) -> Words:
                 would_change=tuple(answers.would_change(result)),
             )
         case MapResult():
-            found = tuple(map(findings.said, result.findings))
-            return Words(maps.headline(result), maps.sentences(result), found)
+            return Words(
+                maps.headline(result),
+                maps.sentences(result),
+                tuple(map(findings.describe, result.findings)),
+            )
         case ScanResult():
-            found = tuple(map(findings.said, result.findings))
-            said = scan.headline(result), scan.sentences(result), found
-            return Words(*said, commands=scan.commands(result))
+            return Words(
+                scan.headline(result),
+                scan.sentences(result),
+                tuple(map(findings.describe, result.findings)),
+                commands=scan.commands(result),
+            )

@@ -1,5 +1,7 @@
 """Tables as Markdown: the paper's figure stands in parentheses behind ours."""
 
+from collections.abc import Iterable
+
 from faultpath.report.tables.escapes import markdown as escape
 from faultpath.report.tables.model import Entry, Table
 
@@ -8,6 +10,11 @@ def block(table: Table) -> str:
     """Return title, table and notes, each a block of its own."""
     notes = [f"- {escape(note)}" for note in (*table.legend(), *table.notes)]
     return "\n".join([f"**{escape(table.title)}**", "", grid(table), "", *notes, ""])
+
+
+def blocks(tables: Iterable[Table]) -> str:
+    """Return tables one below the other."""
+    return "\n\n".join(map(block, tables))
 
 
 def grid(table: Table) -> str:

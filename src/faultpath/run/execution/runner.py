@@ -143,8 +143,7 @@ def run_plan(
                     waiting = iter(again.tasks())
                     work(lambda worker: next(waiting, None), again.handle_reply)
                 trials, findings = state.trials(), (*state.findings(), *again.findings())
-                repeats = not any(recheck.deviation for recheck in again.of_this_run())
-                deliveries = Deliveries.of(plan, state.taps(), trials, findings, repeats)
+                deliveries = Deliveries.of(plan, state.taps(), trials, findings)
                 digest = run.save_tables(trials, deliveries)
     except KeyboardInterrupt:
         # What is on disk counts: the run may have been stopped between storing and noting.
