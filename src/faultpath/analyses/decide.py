@@ -1,4 +1,4 @@
-"""From the outcome table to the decision record."""
+"""From the trials of an audit to its result."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -12,20 +12,16 @@ from faultpath.analyses.effects import Change, Effect, Missing
 from faultpath.analyses.facts import ComparisonFacts, Question
 from faultpath.analyses.family import TestedContrasts, family_of
 from faultpath.analyses.model import (
-    AS_RUN,
-    CORRECT,
-    SHARED,
     AuditResult,
     Condition,
-    ConditionBreakEven,
-    Share,
     Testing,
     invalid_by,
 )
-from faultpath.analyses.shares import between
+from faultpath.analyses.shares import break_even_sets
 from faultpath.analyses.stopping import stopped
 from faultpath.core.errors import UserError
 from faultpath.run.findings import Finding, Unpaired
+from faultpath.run.pairing import Pairs
 from faultpath.run.trials import Trials
 from faultpath.stats.contrast import Contrast
 from faultpath.stats.power import detectable
@@ -39,62 +35,47 @@ def decide(
     trials: Trials,
     findings: Sequence[Finding] = (),
 ) -> AuditResult:
-    """Return the decision record of an audit.
+    """Return the result of an audit.
 
     Each effect rests on the scenes that have its trials, each change on those that both have; a
-    condition that has none is left out. The result carries `findings`, and pairs that met different
-    conditions. Where there are such, or trials did not repeat, nothing is significant.
-    `UserError` when no pair is left under any condition, for a primary
-    condition that the audit does not have, and where newly trained models are asked for and too few
-    trainings differ.
+    condition without a complete pair is left out. The result carries `findings`, and pairs that met
+    different conditions. Where there are such, or trials did not repeat, nothing is significant.
+
+    `UserError` when no pair is left under any condition, for a primary condition that the audit
+    does not have, and where newly trained models are asked for and too few trainings differ.
     """
     primary = primary_condition(question.primary or "", conditions)
     facts = facts.model_copy(update={"primary": primary})
     counts = counts_of(question, conditions, trials)
-    # Whether a fault acted is told by receipts, and other tools' results have none.
+    # The delivery log says whether a fault acted, and other tools' results have none.
     untested = () if facts.judged else untested_conditions(conditions, counts)
-    comparison, family = family_of(question, facts, conditions, trials, untested)
+
+    paired, tested = family_of(question, facts, conditions, trials, untested)
     # A result that is decided anew has the first already.
-    findings = tuple(dict.fromkeys((*Unpaired.first_of(comparison.unpaired), *findings)))
-    invalid = invalid_by(findings)
-    if invalid:
-        family = family.without_claims()
-    models = question.generalise == "models"
-    effects = {
-        condition: _effect(facts, condition, comparison, family, models)
-        for condition in comparison.success
-    }
+    findings = tuple(dict.fromkeys((*Unpaired.first_of(paired.unpaired), *findings)))
+    if invalid := invalid_by(findings):
+        tested = tested.without_claims()
 
-    def even(ends: Sequence[tuple[str, str]], over: Share) -> tuple[ConditionBreakEven, ...]:
-        pairs = ((effects[none], effects[every]) for none, every in ends)
-        results = (between(*pair, comparison, family, over) for pair in pairs)
-        return tuple(result for result in results if result)
-
-    faulted = [condition for condition in effects if condition not in (CORRECT, AS_RUN, *untested)]
-    from_none = [(CORRECT, condition) for condition in faulted] if CORRECT in effects else []
-    from_one = [(condition, SHARED) for condition in family.changes]
-    state = stopped(question, facts, family, trials)
-    first = next(iter(family.effects.values()))
+    effects = {name: _effect(question, facts, name, paired, tested) for name in paired.success}
     return AuditResult(
         question=question,
         facts=facts,
         conditions=tuple(conditions),
         counts=counts,
         effects=tuple(effects.values()),
-        changes=tuple(_change(condition, family) for condition in family.changes),
+        changes=tuple(_change(condition, tested) for condition in tested.changes),
         secondary=tuple(
-            secondary(condition, comparison.pairs[condition], question, facts)
-            for condition in effects
+            secondary(name, pairs, question, facts) for name, pairs in paired.pairs.items()
         ),
-        break_evens=(*even(from_none, "frequency"), *even(from_one, "beta")),
+        break_evens=break_even_sets(effects, paired, tested, untested),
         scenes=max(effect.scenes for effect in effects.values()),
         invalid=invalid,
         testing=Testing(
-            hypotheses=family.hypotheses,
-            scenes_needed=family.scenes_needed,
-            intervals=first.estimate().method,
+            hypotheses=tested.hypotheses,
+            scenes_needed=tested.scenes_needed,
+            intervals=next(iter(tested.effects.values())).method,
         ),
-        stopped=state and state.model_copy(update={"small": ()} if invalid else {}),
+        stopped=stopped(question, facts, tested, trials, valid=invalid is None),
         findings=findings,
     )
 
@@ -115,41 +96,23 @@ def primary_condition(named: str, conditions: Sequence[Condition]) -> str:
 
 
 def _effect(
+    question: Question,
     facts: ComparisonFacts,
     condition: str,
-    comparison: PairedTrials,
-    family: TestedContrasts,
-    models: bool,
+    paired: PairedTrials,
+    tested: TestedContrasts,
 ) -> Effect:
-    repair, baseline = comparison.success[condition]
-    effect, pairs = family.effects[condition], comparison.pairs[condition]
+    repair, baseline = paired.success[condition]
+    effect = tested.effects[condition]
     assert effect.test is not None
     assert effect.pairs is not None
     assert effect.won is not None
-    unpaired = np.isnan(repair - baseline)
-    rates = [percent(np.where(unpaired, np.nan, part)) for part in (baseline, repair)]
-    void, missing = int(pairs.void.sum()), None
-    if condition in family.missing.bounds:
-        against, favour = family.missing.bounds[condition]
-        repair_failed, baseline_failed = (
-            int(failed.sum()) for failed in pairs.ended(Status.FAILED)
-        )
-        missing = Missing(
-            void=void,
-            repair=repair_failed,
-            baseline=baseline_failed,
-            against_pp=against.value,
-            favour_pp=favour.value,
-            uneven=condition in family.uneven,
-            unsettled=effect_name(condition) in family.missing.unsettled,
-            reruns=family.missing.reruns.get(condition),
-        )
-    elif void:
-        missing = Missing(void=void)
-    # None is known for newly trained models, whose spread a few seeds do not give, and of an audit
+    incomplete = np.isnan(repair - baseline)
+    rates = [percent(np.where(incomplete, np.nan, part)) for part in (baseline, repair)]
+    # Not known for newly trained models, whose spread a few seeds do not give, nor for an audit
     # that stops where it has decided.
     level, least = effect.test.critical_p, None
-    if level and not models and facts.order is None:
+    if level and question.generalise != "models" and facts.order is None:
         least = detectable(effect.pairs, graded=True, alpha=level, on_top=True)
     return Effect(
         condition=condition,
@@ -157,18 +120,37 @@ def _effect(
         won=effect.won,
         ahead=effect.ahead,
         rates=(rates[0], rates[1]),
-        missing=missing,
+        missing=_missing(condition, paired.pairs[condition], tested),
         least_pp=least,
     )
 
 
-def _change(condition: str, family: TestedContrasts) -> Change:
-    contrast = family.changes[condition]
+def _missing(condition: str, pairs: Pairs, tested: TestedContrasts) -> Missing | None:
+    """Return what is missing of a condition's pairs; `None` where nothing is, nor elsewhere."""
+    void = int(pairs.void.sum())
+    if condition not in tested.missing.bounds:
+        return Missing(void=void) if void else None
+    against, favour = tested.missing.bounds[condition]
+    repair, baseline = (int(failed.sum()) for failed in pairs.ended(Status.FAILED))
+    return Missing(
+        void=void,
+        repair=repair,
+        baseline=baseline,
+        against_pp=against.value,
+        favour_pp=favour.value,
+        uneven=condition in tested.uneven,
+        unsettled=effect_name(condition) in tested.missing.unsettled,
+        reruns=tested.missing.reruns.get(condition),
+    )
+
+
+def _change(condition: str, tested: TestedContrasts) -> Change:
+    contrast = tested.changes[condition]
     return Change(
         isolated=condition,
         **_difference(contrast),
-        unsettled=change_name(condition) in family.missing.unsettled,
-        turn=family.turns[condition],
+        unsettled=change_name(condition) in tested.missing.unsettled,
+        turn=tested.turns[condition],
     )
 
 

@@ -1,11 +1,12 @@
 """At which shares, of faulty episodes or of common causes, a version is ahead."""
 
 import math
+from collections.abc import Collection, Mapping, Sequence
 
 from faultpath.analyses.compared import PairedTrials
 from faultpath.analyses.effects import Effect
 from faultpath.analyses.family import TestedContrasts
-from faultpath.analyses.model import Ahead, ConditionBreakEven, Share
+from faultpath.analyses.model import AS_RUN, CORRECT, SHARED, Ahead, ConditionBreakEven, Share
 from faultpath.stats.breakeven import break_even, mixture_curve, only
 from faultpath.stats.estimate import Region
 
@@ -13,8 +14,29 @@ _SLACK = 1e-6
 """On a percentage that is a whole number but for rounding."""
 
 
-def between(
-    none: Effect, every: Effect, comparison: PairedTrials, family: TestedContrasts, over: Share
+def break_even_sets(
+    effects: Mapping[str, Effect],
+    paired: PairedTrials,
+    tested: TestedContrasts,
+    untested: Collection[str],
+) -> tuple[ConditionBreakEven, ...]:
+    """Return where neither version is ahead: over the frequency of the fault under each condition
+    in which it acts, and over the beta factor of each module, where the two ends have scenes in
+    common."""
+    faulted = [name for name in effects if name not in (CORRECT, AS_RUN, *untested)]
+    by_frequency = [(CORRECT, name) for name in faulted if CORRECT in effects]
+    by_beta = [(name, SHARED) for name in tested.changes]
+    shares: Mapping[Share, Sequence[tuple[str, str]]] = {"frequency": by_frequency, "beta": by_beta}
+    sets = [
+        _between(effects[none], effects[every], paired, tested, over)
+        for over, ends in shares.items()
+        for none, every in ends
+    ]
+    return tuple(even for even in sets if even is not None)
+
+
+def _between(
+    none: Effect, every: Effect, paired: PairedTrials, tested: TestedContrasts, over: Share
 ) -> ConditionBreakEven | None:
     """Return where baseline and repair are even between the effects at two ends of a share, over
     the scenes that both have; `None` where they have none in common.
@@ -22,23 +44,23 @@ def between(
     The share is that of episodes with the fault of `every`, or the beta factor of the module that
     `none` is of.
     """
-    tests = [family.effects[end.condition].test for end in (none, every)]
+    tests = [tested.effects[end.condition].test for end in (none, every)]
     level = 1.0 - min(test.critical_p for test in tests if test and test.critical_p is not None)
-    tested = family.design.together(
-        comparison.success[none.condition], comparison.success[every.condition]
+    contrasts = tested.design.together(
+        paired.success[none.condition], paired.success[every.condition]
     )
-    if tested is None:
+    if contrasts is None:
         return None
-    bounds = family.missing.bounds
+    bounds = tested.missing.bounds
     filled = [bounds[end.condition] for end in (none, every) if end.condition in bounds]
     # Both ends with what failed trials leave open against the repair, and for it.
     fills = tuple(zip(*filled, strict=True)) if any(a.value != b.value for a, b in filled) else ()
-    result = break_even(*tested, level=level, fills=fills)
+    result = break_even(*contrasts, level=level, fills=fills)
     return ConditionBreakEven(
         condition=none.condition if over == "beta" else every.condition,
         over=over,
         result=only(result, [region for region in result.regions if _shown(region, none, every)]),
-        curve=mixture_curve(*tested, level=level, fills=fills),
+        curve=mixture_curve(*contrasts, level=level, fills=fills),
         ahead=_ahead(result.regions, none, every),
     )
 

@@ -16,17 +16,22 @@ def stops(
     """Return whether a sequential audit stops with these trials; their order does not matter."""
     untested = untested_conditions(conditions, counts_of(question, conditions, trials))
     try:
-        _, family = family_of(question, facts, conditions, trials, untested)
+        _, tested = family_of(question, facts, conditions, trials, untested)
     except UserError:  # no pair is sound so far
         return False
-    state = stopped(question, facts, family, trials)
+    state = stopped(question, facts, tested, trials)
     return state is not None and state.reached
 
 
 def stopped(
-    question: Question, facts: ComparisonFacts, family: TestedContrasts, trials: Trials
+    question: Question,
+    facts: ComparisonFacts,
+    tested: TestedContrasts,
+    trials: Trials,
+    valid: bool = True,
 ) -> StoppedAudit | None:
-    """Return how a sequential audit stands with these trials; `None` of one that is not.
+    """Return how a sequential audit stands with these trials; `None` for one that is not
+    sequential. No difference is shown to be small by trials that are not `valid`.
 
     Every claim on a contrast, of who is ahead or of how little, follows from its one interval, at
     the level of its share.
@@ -34,24 +39,26 @@ def stopped(
     if facts.order is None:
         return None
     small: list[str] = []
-    for condition, effect in family.effects.items():
+    for condition, effect in tested.effects.items():
         critical = effect.test.critical_p if effect.test else None
-        if critical is None or effect.n_scenes < family.scenes_needed:
+        if critical is None or effect.n_scenes < tested.scenes_needed:
             continue
         level, margin = 1.0 - critical, question.margin_pp or 0.0
         # Whatever failed trials would have been.
-        filled = (effect, *family.missing.bounds.get(condition, ()))
+        filled = (effect, *tested.missing.bounds.get(condition, ()))
         ends = [contrast.ends(level) or (-100.0, 100.0) for contrast in filled]
         if all(-margin < low and high < margin for low, high in ends):
             small.append(condition)
     significant_or_small = {
         condition
-        for condition, effect in family.effects.items()
+        for condition, effect in tested.effects.items()
         if effect.sign or condition in small
     }
-    required = set(family.effects) if question.stop_when == "all-decided" else {facts.primary}
+    required = set(tested.effects) if question.stop_when == "all-decided" else {facts.primary}
     scenes = len(trials.scenes)
-    return StoppedAudit(scenes=scenes, reached=required <= significant_or_small, small=tuple(small))
+    return StoppedAudit(
+        scenes=scenes, reached=required <= significant_or_small, small=tuple(small) if valid else ()
+    )
 
 
 def with_earlier_analyses(record: AuditResult, earlier: Iterable[AuditResult]) -> AuditResult:
