@@ -155,11 +155,7 @@ def sections() -> Iterator[Section]:
     yield (
         "Scans for errors that cancel",
         lambda: markdown(
-            (
-                "truth; scenes, seeds",
-                *(f"cancel, {errors}" for errors in ERRORS),
-                *(f"covers, {errors}" for errors in ERRORS),
-            ),
+            ("truth; scenes, seeds", "a pair cancels", "an error covers"),
             (
                 (f"{TRUTHS[truth]}; {scenes}, {seeds}", *scan_claims(truth, scenes, seeds))
                 for truth, scenes, seeds in (
@@ -185,7 +181,7 @@ def sections() -> Iterator[Section]:
 
 
 def scan_claims(truth: str, scenes: int, seeds: int) -> Iterator[str]:
-    """Yield the entries of a row: what scans report falsely, by number of errors."""
-    rates = [[false_claims(truth, scenes, n, base, seeds) for base in BASES] for n in ERRORS]
-    for claim in (0, 1):
-        yield from (share(both[claim] for both in column) for column in rates)
+    """Yield the entries of a row: how often scans report falsely that a pair cancels, and that an
+    error covers for another."""
+    rates = [false_claims(truth, scenes, n, base, seeds) for n, base in product(ERRORS, BASES)]
+    yield from (share(of) for of in zip(*rates, strict=True))
