@@ -200,3 +200,8 @@ def success(effect: effects.Effect) -> str:
     """Return success of baseline and repair, and their difference."""
     rates = (wording.plain(rate, 1) for rate in effect.rates)
     return f"{' → '.join(rates)}, {between([_effect(effect)])}"
+
+
+def means(of: tuple[float, float]) -> str:
+    """Return the means of a metric, of baseline and repair."""
+    return " → ".join(f"{value:.3g}" for value in of)

@@ -55,7 +55,12 @@ NAMES = {
     "studies": studies,
     "words": words,
 }
-FILTERS = {"load": load, "between": comparison.between, "success": comparison.success}
+FILTERS = {
+    "load": load,
+    "between": comparison.between,
+    "means": comparison.means,
+    "success": comparison.success,
+}
 """What templates use, beside the filters of `rendering`."""
 BLOCKS: Mapping[str, Callable[..., str]] = {
     **macros(NAMES, FILTERS),

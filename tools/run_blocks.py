@@ -40,7 +40,7 @@ MEASURES = {
 
 def quantities(record: AuditResult) -> str:
     """Return success of both variants and their difference, one condition a column."""
-    return grid(by_quantity(record, ("baseline", "repair", *DIFFERENCE, "holm", "break-even")))
+    return grid(by_quantity(record, ("baseline", "repair", *DIFFERENCE, "holm")))
 
 
 def printed(name: str) -> str:

@@ -17,9 +17,11 @@ CAMERA_PLACES = {
     "goal": "picture of the goal alone",
     "shared": "both pictures",
 }
+CAMERA_COMPARED = {place: words for place, words in CAMERA_PLACES.items() if place != "goal"}
+"""Places of the page's table: a test of the live picture alone, and deployment."""
 CAMERA_FAULTS = {
     "darker": "15 % darker",
-    "contrast": "gamma 1.3 times as large",
+    "contrast": "gamma 1.3",
     "moved": "shifted by 2 px",
     "drifting": "drifting to 30 % darker",
     "smeared": "smeared by 6 px",

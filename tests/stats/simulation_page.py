@@ -4,7 +4,6 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
-from functools import partial
 from itertools import product, repeat
 from pathlib import Path
 from typing import Any
@@ -28,7 +27,7 @@ from simulation import (
 from simulation_blanks import BLANKS, blanks
 from simulation_many import LEVELS, SCENES, largest_level
 from simulation_skewed import skewed, skewed_coverage
-from simulation_tables import Section, kept, markdown, share, written
+from simulation_tables import Section, kept, markdown, merged, share, written
 
 from faultpath.analyses.family import ALPHA
 
@@ -78,37 +77,37 @@ def sections() -> Iterator[Section]:
     yield (
         "Interval of an effect",
         table(
-            *("scenes, seeds", by_rate, pairs((10, 25, 50, 100, 300), (1, 3, 5))),
-            lambda size, rate: (
-                interval_coverage(size[0], truth)
-                for lean in LEANS
-                for truth in structured(rate, lean, size[1])
+            *("scenes", by_rate, {f"{n}": n for n in (10, 25, 50, 100, 300)}),
+            lambda scenes, rate: (
+                interval_coverage(scenes, truth)
+                for lean, count in product(LEANS, (1, 3, 5))
+                for truth in structured(rate, lean, count)
             ),
         ),
     )
     yield (
         "Break-even frequency",
         table(
-            *("scenes, seeds", by_rate, pairs((25, 100, 300), (1, 3))),
-            lambda size, rate: (
-                break_even_coverage(size[0], cost, replace(cost, rate=gain, lean=1.0))
-                for lean, gain in product((0.5, 1.0), (0.05, 0.3))
-                for cost in structured(rate, -lean, size[1])
+            *("scenes", by_rate, {f"{n}": n for n in (25, 100, 300)}),
+            lambda scenes, rate: (
+                break_even_coverage(scenes, cost, replace(cost, rate=gain, lean=1.0))
+                for lean, gain, count in product((0.5, 1.0), (0.05, 0.3), (1, 3))
+                for cost in structured(rate, -lean, count)
                 if cost.mean <= 0.0
             ),
         ),
     )
-    sizes = product((25, 100, 300), (0.02, 0.1, 0.3))
     yield (
         "Least detectable difference",
         table(
-            *("scenes, share that differs", seeds),
-            {f"{n}, {100 * rate:g} %": (n, rate) for n, rate in sizes},
-            lambda size, s: detection(size[0], Population(size[1], 0.0, s, 0.5 * (s > 1)), ALPHA),
+            *("scenes", seeds, {f"{n}": n for n in (25, 100, 300)}),
+            lambda scenes, s: (
+                detection(scenes, Population(rate, 0.0, s, 0.5 * (s > 1)), ALPHA)
+                for rate in (0.02, 0.1, 0.3)
+            ),
         ),
     )
-    yield "Audits of equal versions", partial(announced, equal_variants)
-    yield "Sequential audits of equal versions", partial(announced, any_look)
+    yield "Audits of equal versions", announced
     heads = ("largest level", "largest to one side", "populations above .05")
     heads = (*heads, "above .025 to one side", "power, 3 seeds", "power, 1 seed")
     yield (
@@ -127,23 +126,21 @@ def sections() -> Iterator[Section]:
             ),
         ),
     )
-    sizes = product((50, 100, 300), (3, 5), (0.2, 0.9))
     yield (
         "Intervals of skewed seeds",
         table(
-            *("scenes, seeds, share that gains", percent(LOST)),
-            {f"{n}, {s}, {100 * gains:g} %": (n, s, gains) for n, s, gains in sizes},
-            lambda size, lost: skewed_coverage(*size, lost),
+            *("scenes", percent(LOST), {f"{n}": n for n in (50, 100, 300)}),
+            lambda scenes, lost: (
+                skewed_coverage(scenes, seeds, gains, lost)
+                for seeds, gains in product((3, 5), (0.2, 0.9))
+            ),
         ),
     )
     yield (
         "Missing trials",
         lambda: markdown(
-            ("what is missing, seeds", "any difference", "any set is wrong"),
-            (
-                (f"{kind}, {s}", *(share([rate]) for rate in rates))
-                for (kind, s), rates in zip(BLANKS, missing(), strict=True)
-            ),
+            ("what is missing", "any difference", "any set is wrong"),
+            merged((kind, rates) for (kind, _), rates in zip(BLANKS, missing(), strict=True)),
         ),
     )
     yield (
@@ -173,23 +170,22 @@ def sections() -> Iterator[Section]:
     yield from scans.sections()
 
 
-def announced(found: Callable[[int, Population, float], float]) -> str:
-    """Return the table of audits of equal versions, of which `found` measures one entry."""
+def announced() -> str:
+    """Return the table of audits of equal versions: of fixed size, then sequential ones."""
     sizes = ((25, 1), (100, 1), (100, 3))
     rows = [
         (n, Population(rate, 0.0, seeds, 0.5)) for (n, seeds), rate in product(sizes, (0.05, 0.3))
     ]
     with ProcessPoolExecutor() as pool:
-        apart, alike = (
-            pool.map(found, *zip(*rows, strict=True), repeat(together)) for together in (0.0, 0.7)
-        )
-        rates = list(zip(apart, alike, strict=True))
+        columns = [
+            pool.map(reported, *zip(*rows, strict=True), repeat(together))
+            for reported, together in product((equal_variants, any_look), (0.0, 0.7))
+        ]
+        rates = list(zip(*columns, strict=True))
+    heads = ("independent", "alike 70 %", "sequential, independent", "sequential, alike 70 %")
     return markdown(
-        ("scenes, seeds, share that differs", "conditions independent", "conditions alike 70 %"),
-        (
-            (f"{n}, {truth.seeds}, {100 * truth.rate:g} %", *(share([rate]) for rate in both))
-            for (n, truth), both in zip(rows, rates, strict=True)
-        ),
+        ("scenes, seeds", *heads),
+        merged((f"{n}, {of.seeds}", row) for (n, of), row in zip(rows, rates, strict=True)),
     )
 
 
@@ -204,13 +200,12 @@ def main() -> None:
     alone and leave the others as they are on the page."""
     page, *titles = sys.argv[1:]
     lines = [
-        "# What the statistics keep",
+        "# Error rates by simulation",
         "",
         "Made by `make statistics`: the shipped code analyses populations with a known truth. "
-        "Simulated rates have a standard error of .003 (interval), .005 (break-even, audits of "
-        "equal versions), .018 (sequential audits) and at most .020 (reversals, failed trials). "
-        "What is promised, and by which tests: "
-        "[design/statistics.md](design/statistics.md).",
+        "Rates have a standard error of .003 (interval), .005 (break-even, audits of equal "
+        "versions), .018 (sequential audits) and at most .020 (reversals, failed trials). "
+        "[Design](design/statistics.md): what is promised, and by which tests.",
         "",
     ]
     measured_before = written(Path(page)) if titles else {}

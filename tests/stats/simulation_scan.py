@@ -24,6 +24,10 @@ BASES = (0.6, 0.95)
 """Success without an error."""
 ERRORS = (4, 8, 12)
 """Signed errors."""
+SECOND = (50, 200)
+"""Scenes of the second stage."""
+CLAIMS = ("cancels", "covers")
+"""What scans report falsely: that a pair cancels, and that an error covers for another one."""
 TRIALS, OTHERS = (4000, 6000, 8000), (0.0, 0.05, 0.1, 0.15)
 """Of scans with a planted pair: trials of both stages, and what the other errors cost."""
 TRUTHS = {
@@ -155,18 +159,8 @@ def sections() -> Iterator[Section]:
     yield (
         "Scans for errors that cancel",
         lambda: markdown(
-            (
-                "truth; scenes, seeds",
-                *(f"cancel, {errors}" for errors in ERRORS),
-                *(f"covers, {errors}" for errors in ERRORS),
-            ),
-            (
-                (f"{TRUTHS[truth]}; {scenes}, {seeds}", *scan_claims(truth, scenes, seeds))
-                for truth, scenes, seeds in (
-                    *product(TRUTHS, (50, 200), (1,)),
-                    ("equal", 50, 3),
-                )
-            ),
+            ("truth", *(f"{claim}, {n}" for claim, n in product(CLAIMS, SECOND))),
+            ((name, *scan_claims(truth)) for truth, name in TRUTHS.items()),
         ),
     )
     yield (
@@ -184,8 +178,13 @@ def sections() -> Iterator[Section]:
     )
 
 
-def scan_claims(truth: str, scenes: int, seeds: int) -> Iterator[str]:
-    """Yield the entries of a row: what scans report falsely, by number of errors."""
-    rates = [[false_claims(truth, scenes, n, base, seeds) for base in BASES] for n in ERRORS]
-    for claim in (0, 1):
-        yield from (share(both[claim] for both in column) for column in rates)
+def scan_claims(truth: str) -> Iterator[str]:
+    """Yield the entries of a row: each false claim, with few and with many other scenes."""
+    columns: list[list[str]] = []
+    for scenes in SECOND:
+        counts = (1, 3) if (truth, scenes) == ("equal", min(SECOND)) else (1,)
+        sizes = product(ERRORS, BASES, counts)
+        rates = [false_claims(truth, scenes, *size) for size in sizes]
+        columns.append([share(of) for of in zip(*rates, strict=True)])
+    for claim in zip(*columns, strict=True):
+        yield from claim

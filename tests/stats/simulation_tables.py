@@ -25,6 +25,14 @@ def markdown(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
 
+def merged(rows: Iterable[tuple[str, Iterable[float]]]) -> list[list[str]]:
+    """Return lines of a table: rows of one name are one line, with the range of each rate."""
+    lines: dict[str, list[Iterable[float]]] = {}
+    for name, rates in rows:
+        lines.setdefault(name, []).append(rates)
+    return [[name, *map(share, zip(*rates, strict=True))] for name, rates in lines.items()]
+
+
 def kept(title: str, measured: Callable[[], str]) -> str:
     """Return a table, from `build/statistics` where the same code has measured it before."""
     package = Path(faultpath.__file__).parent
