@@ -1,4 +1,4 @@
-"""The blocks of `docs/performance.md` from `results.json`: its words are there, its numbers here.
+"""Blocks of `docs/performance.md` and of the README here: their words are there, numbers here.
 
 As in every document, `tools/documents.py` fills the blocks that are marked in it.
 """
@@ -131,9 +131,11 @@ def gpu() -> str:
     columns = ("a scene", "one core", "ratio")
     lines = [entry for name, figures in machines.items() for entry in _steps(name, figures)]
     origins = "; ".join(
-        f"{name} on {figures['date']}, torch {figures['torch']}, one core with kernels "
-        f"`{figures['kernels']}`"
-        for name, figures in machines.items()
+        dict.fromkeys(
+            f"{figures['date']}, torch {figures['torch']}, one core with kernels "
+            f"`{figures['kernels']}`"
+            for figures in machines.values()
+        )
     )
     commands = ", ".join(dict.fromkeys(f"`{figures['command']}`" for figures in machines.values()))
     parts = [
