@@ -1,11 +1,10 @@
-"""The blocks of `docs/performance.md` from `results.json`: its words are there, its numbers here.
+"""Blocks of `docs/performance.md` and of the README here: their words are there, numbers here.
 
 As in every document, `tools/documents.py` fills the blocks that are marked in it.
 """
 
 import json
 from collections.abc import Iterator, Sequence
-from statistics import median
 from typing import Any
 
 from benchmarks.results import (
@@ -61,14 +60,11 @@ def machine() -> str:
 
 def elsewhere() -> str:
     """Return the ratios to other planners on another machine: they depend on the processor."""
-    then, here = load(EARLIER), {record.name: record for record in load().records}
-    ratios = "; ".join(
-        f"{record.name}: {_ratio(record)} there, {_ratio(here[record.name])} here"
-        for record in then.records
-    )
+    then = load(EARLIER)
+    ratios = "; ".join(f"{record.name}: {_ratio(record)}" for record in then.records)
     return (
         f"On another machine ({then.machine.processor}, kernels `{then.machine.kernels}`, "
-        f"{then.machine.date}) the ratios to other planners were not the same. {ratios}."
+        f"{then.machine.date}) ratios to other planners differed. {ratios}."
     )
 
 
@@ -132,12 +128,14 @@ def waits() -> str:
 def gpu() -> str:
     """Return what `device.json` holds: steps of a trial on each GPU, an audit, the paper."""
     machines = json.loads(DEVICE.read_text())
-    columns = ("a scene", "one core", "ratio", "kernels a step", "computing, %")
+    columns = ("a scene", "one core", "ratio")
     lines = [entry for name, figures in machines.items() for entry in _steps(name, figures)]
     origins = "; ".join(
-        f"{name} on {figures['date']}, torch {figures['torch']}, one core with kernels "
-        f"`{figures['kernels']}`"
-        for name, figures in machines.items()
+        dict.fromkeys(
+            f"{figures['date']}, torch {figures['torch']}, one core with kernels "
+            f"`{figures['kernels']}`"
+            for figures in machines.values()
+        )
     )
     commands = ", ".join(dict.fromkeys(f"`{figures['command']}`" for figures in machines.values()))
     parts = [
@@ -155,12 +153,11 @@ def _steps(name: str, figures: dict[str, Any]) -> list[Line]:
     alone = [taken / core["scenes"] for taken in core["step_ms"]]
     lines: list[Line] = []
     for block in blocks:
-        busy = 100 * block["busy_ms"] / median(block["step_ms"])
         scenes = [taken / block["scenes"] for taken in block["step_ms"]]
         taken = record(name, "ms", scenes, alone, "one core")
         times = (f"{number(value)} ms" for value in (taken.ours, taken.peer) if value is not None)
         size = f"{name}, blocks of {block['scenes']}"
-        lines.append(line(size, *times, _ratio(taken), str(block["kernels"]), number(busy)))
+        lines.append(line(size, *times, _ratio(taken)))
     return lines
 
 
@@ -169,15 +166,14 @@ def _runs(figures: dict[str, Any]) -> Iterator[str]:
     if audits := figures.get("audits"):
         here, there = audits["successes"]
         yield (
-            f"Of {audits['trials']} trials of `make audit`, {audits['alike']} end alike on the "
-            f"processor and the GPU; {here} succeed on the first and {there} on the second. The "
-            f"audit finds the same on both, significant or not, on {audits['decided_alike']} of "
-            f"{audits['conditions']} conditions (`{audits['command']}`)."
+            f"Of {audits['trials']} trials of `make audit`, {audits['alike']} end alike on "
+            f"processor and GPU ({here} and {there} succeed); what is significant is the same in "
+            f"{audits['decided_alike']} of {audits['conditions']} conditions "
+            f"(`{audits['command']}`)."
         )
     if paper := figures.get("paper"):
         origin = paper.get("by_hand") or f"`{paper['command']}`"
         yield (
-            f"`{paper['runs']}`, {paper['trials']} trials, took {paper['cpu_s']:.0f} s with "
-            f"`--workers {paper['cores']}` on {paper['cores']} cores and {paper['gpu_s']:.0f} s "
-            f"with `--device cuda` ({origin})."
+            f"`{paper['runs']}`, {paper['trials']} trials: {paper['cpu_s']:.0f} s on "
+            f"{paper['cores']} cores, {paper['gpu_s']:.0f} s with `--device cuda` ({origin})."
         )

@@ -1,11 +1,8 @@
-"""Names of a module with their signatures, for who reads one page and no site."""
+"""Names of a module and what their calls take, for who reads one page and no site."""
 
 import inspect
 import re
 from importlib import import_module
-
-_PATH = re.compile(r"\b(?:[a-z_]\w*\.)+(?=\w)")
-_NOTES = re.compile(r"Annotated\[(\w+),[^\]]*\]")
 
 
 def signatures(module: str, *names: str) -> str:
@@ -20,12 +17,10 @@ def _line(name: str, thing: object) -> str:
     doc = inspect.getdoc(thing) or ""
     first = " ".join(re.split(r"(?<=\.)\s|\n\n", doc, maxsplit=1)[0].split())
     try:
-        taken = str(inspect.signature(thing))  # pyright: ignore[reportArgumentType]
+        taken = inspect.signature(thing)  # pyright: ignore[reportArgumentType]
     except (TypeError, ValueError):
-        taken = ""
-    if inspect.isclass(thing):
-        taken = taken.removesuffix(" -> None")
-        if re.search(r"[(\s]_\w+:", taken):  # only faultpath makes one
-            taken = ""
-    taken = _NOTES.sub(r"\1", _PATH.sub("", taken))
-    return f"{name}{taken}\n    {first}"
+        return f"{name}\n    {first}"
+    fields = [field.replace(annotation=field.empty) for field in taken.parameters.values()]
+    if inspect.isclass(thing) and any(field.name.startswith("_") for field in fields):
+        fields = []  # only faultpath makes one
+    return f"{name}{inspect.Signature(fields)}\n    {first}"

@@ -23,6 +23,7 @@ from faultpath.api.folders import (
     SCAN,
     SCAN_MADE_FROM,
 )
+from faultpath.report.sentences.words import words
 from faultpath.report.tables.escapes import html as escape
 from faultpath.run.provenance import RunProvenance
 
@@ -125,6 +126,16 @@ class Run:
     name: str
     record: Any
     provenance: RunProvenance
+
+    @property
+    def headline(self) -> str:
+        """The result in one sentence."""
+        return words(self.record).headline
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """All that the result says."""
+        return words(self.record).sentences
 
     @property
     def repeats(self) -> Repeats | None:

@@ -98,7 +98,7 @@ MARKER = re.compile(r"^<!-- (?:begin|end):\S+ -->$", flags=re.MULTILINE)
 
 def documents() -> list[Path]:
     """Return the documents that may have blocks."""
-    places = ("README.md", "docs/*.md", "experiments/*/README.md")
+    places = ("README.md", "docs/*.md", "benchmarks/README.md", "experiments/*/README.md")
     return [path for place in places for path in sorted(ROOT.glob(place))]
 
 

@@ -17,7 +17,7 @@ from faultpath.analyses.model import AuditResult
 from faultpath.report.audit_tables import DIFFERENCE, by_quantity
 from faultpath.report.map_pictures import correlation_picture, map_picture
 from faultpath.report.scan_pictures import triangle
-from faultpath.report.sentences.headline import headline
+from faultpath.report.sentences.words import words
 from faultpath.report.tables.markdown import grid
 from faultpath.report.terminal import decision
 
@@ -85,14 +85,14 @@ def map_picture_of(name: str, part: str) -> Picture:
     """Return the picture of a map, or of its success by correlation."""
     record = load(name).record
     svg = MAP_PICTURES[part](record).render(standalone=True) + "\n"
-    return Picture(f"{name}-{part}.svg", headline(record), svg)
+    return Picture(f"{name}-{part}.svg", words(record).headline, svg)
 
 
 def scan_picture_of(name: str) -> Picture:
     """Return the triangle of pairs of the first variant of a scan."""
     record = load(name).record
     svg = triangle(record, record.versions[0]).render(standalone=True) + "\n"
-    return Picture(f"{name}-pairs.svg", headline(record), svg)
+    return Picture(f"{name}-pairs.svg", words(record).headline, svg)
 
 
 def part_of(place: str, part: str) -> str:

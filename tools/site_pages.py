@@ -98,13 +98,13 @@ SIDE_BAR: Mapping[str, str] = {
 }
 """Pages of the side bar, by their heading."""
 BELOW: Mapping[str, str] = {
-    "install": "release-notes releasing",
+    "install": "release-notes",
     "torch": "repairs",
-    "statistics": "statistics-check sequential-audits several-runs",
+    "statistics": "statistics-check",
     "gallery": "rotorpy do-mpc motulator basilisk wpilib openpilot stable-worldmodel lerobot "
     "learned-world-model latent-camera notebooks/toy notebooks/gymnasium notebooks/quadrotor",
     "quadrotor": "reproduction state-errors carry-over bring-your-own-model reference/README",
-    "python": "continuous-integration many-trials for-assistants",
+    "python": "continuous-integration many-trials",
     "performance": "design/README",
     "design/README": "*",
 }

@@ -27,7 +27,7 @@ def test_every_row_was_measured_or_says_why_not_and_is_shown():
 
 
 def test_sizes_in_the_text_are_those_that_are_measured():
-    text = (ROOT / "docs" / "performance.md").read_text("utf-8")
+    text = (ROOT / "benchmarks" / "README.md").read_text("utf-8")
     words = re.sub(r"<!-- begin:(\S+) -->.*?<!-- end:\1 -->", "", text, flags=re.DOTALL).split()
     scenes, seeds = physics.outcomes()[0].shape
     for sizes in (

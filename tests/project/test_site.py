@@ -62,7 +62,7 @@ def test_the_start_names_every_page_and_the_guide_for_assistants_leads_to_pages(
     pages = {page.name for page in (ROOT / "docs").glob("*.md")} - {"index.md"}
     assert pages - set(re.findall(r"\]\(([\w-]+\.md)\)", start)) == set()
     guide = re.findall(r"\]\((.*?)\)", (ROOT / "llms.txt").read_text("utf-8"))
-    assert "docs/for-assistants.md" in guide
+    assert "docs/python.md" in guide
     assert [to for to in guide if not (ROOT / to).is_file()] == []
 
 
