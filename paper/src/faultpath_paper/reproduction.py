@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Sequence
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from typing import NoReturn
@@ -110,7 +111,7 @@ def reproduce(
     terminal = display(progress, "reproduce", arguments | {"pages": named})
 
     with executor_of(work.system, workers, executor) as workforce:
-        return carry_out(work, Job(place, workforce, terminal, {"time_limit_s": time_limit_s}))
+        return carry_out(work, Job(place, workforce, terminal, time_limit_s))
 
 
 def carry_out(plan: ReproductionPlan, job: Job) -> ReproductionRun:
@@ -141,7 +142,7 @@ def carry_out(plan: ReproductionPlan, job: Job) -> ReproductionRun:
     place = folder / plan.place
     record = conclude(plan, results)
     result = save(place, flown, results, record)
-    provenance = job.finish(result, plan.system, (*RESULTS, DELIVERIES), place)
+    provenance = replace(job, folder=place).finish(result, plan.system, (*RESULTS, DELIVERIES))
     write_pages(place, record, provenance)
     return ReproductionRun(place, record, provenance)
 

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 from faultpath.analyses.planning import faults_by_condition
 from faultpath.api.display import Display
 from faultpath.api.job import begin, with_question_signature
-from faultpath.api.systems import Chosen
 from faultpath.faults import Fault
 from faultpath.run.question import CheckQuestion, TraceQuestion
 from faultpath.run.work.executor import Progress
@@ -69,12 +68,7 @@ def trace(
         UserError: There is no such system, variant, library or scene, the fault reaches no
             module, or the run fails.
     """
-    question, chosen, _, _ = begin("api.trace", TraceQuestion, system, arguments, progress)
-    return traced(question, chosen)
-
-
-def traced(question: TraceQuestion, chosen: Chosen) -> "TraceReport":
-    """Return the trace of a system that is built; raises as `trace`."""
     from faultpath.run.check.tracing import trace_system
 
+    question, chosen, _, _ = begin("api.trace", TraceQuestion, system, arguments, progress)
     return trace_system(chosen.system, chosen.spec, question)

@@ -13,14 +13,13 @@ import numpy as np
 
 from faultpath.analyses.decide import decide
 from faultpath.analyses.judging import PairedResults, pair_results
-from faultpath.analyses.record import DecisionRecord
-from faultpath.api.audit import concluded
+from faultpath.api.audit import with_stored
 from faultpath.api.display import Display, display
 from faultpath.api.folders import MADE_FROM, RECORD, SYSTEM, as_text
 from faultpath.api.job import with_question_signature
 from faultpath.api.runs import Run
 from faultpath.core.errors import UserError
-from faultpath.core.files.atomic import begin, locked, write_file, write_text
+from faultpath.core.files.atomic import begin, locked, write_text
 from faultpath.interface import Interface
 from faultpath.report.inputs import ReportInput
 from faultpath.run.deliveries import Deliveries, RowDeliveries
@@ -30,9 +29,7 @@ from faultpath.run.question import ask
 from faultpath.run.received.files import read_results
 from faultpath.run.received.question import JudgeQuestion
 from faultpath.run.shown import SystemShown, VariantShown
-from faultpath.run.store.folder import DELIVERIES, OUTCOMES, TRACES
-from faultpath.run.store.tables import encode_outcomes, encode_traces
-from faultpath.run.trials import Trials
+from faultpath.run.store.folder import RunFolder
 from faultpath.run.work.processes import local
 
 
@@ -67,14 +64,11 @@ def judge(
     folder = question.folder or _folder(paired, sources)
     if (folder / "manifest.json").exists():
         raise UserError(f"{folder} holds an audit's trials: give another folder with --out.")
-
-    def conclude() -> DecisionRecord:
-        return decide(
-            paired.question, paired.facts, paired.conditions, paired.trials, paired.findings
-        )
-
     begin(folder)
-    record = concluded(folder, paired.facts.library_hash, conclude)
+    record = decide(
+        paired.question, paired.facts, paired.conditions, paired.trials, paired.findings
+    )
+    record = with_stored(folder, record)
     with locked(folder, shown.say):
         system = _system(paired.question)
         result = _stored(folder, paired, system)
@@ -128,12 +122,8 @@ def _stored(folder: Path, paired: PairedResults, system: SystemShown) -> RunResu
         for variant, condition, seed in rows
     )
     deliveries = Deliveries(rows=taps, findings=paired.findings)
-    outcomes = encode_outcomes(trials)
-    write_file(folder / OUTCOMES, outcomes, folder)
-    write_file(folder / TRACES, encode_traces(Trials.of(())), folder)
-    write_text(folder / DELIVERIES, deliveries.model_dump_json(indent=1) + "\n", folder)
+    digest = RunFolder(folder).save_tables(trials, deliveries)
     write_text(folder / SYSTEM, system.model_dump_json(indent=1) + "\n", folder)
-    digest = hashlib.sha256(outcomes).hexdigest()
     return RunResult(
         trials=trials,
         deliveries=deliveries,

@@ -3,7 +3,7 @@
 from importlib.metadata import entry_points
 from os import PathLike
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, ClassVar
 
 import pyarrow as pa
 
@@ -12,10 +12,8 @@ from faultpath.analyses.map.record import MapRecord
 from faultpath.analyses.record import DecisionRecord
 from faultpath.analyses.scan.record import ScanRecord
 from faultpath.api.folders import (
-    MAP,
+    MADE_FROM,
     MAP_MADE_FROM,
-    RECORD,
-    SCAN,
     SCAN_MADE_FROM,
     parsed,
     read_provenance,
@@ -35,6 +33,9 @@ from faultpath.run.store.tables import encode_outcomes
 
 class FinishedRun:
     """A finished run: its result, how it was made, and where its files are."""
+
+    files: ClassVar[tuple[str, ...]] = MADE_FROM
+    """What its pages are made from, the result first."""
 
     def __init__(self, folder: Path, record: Any, provenance: RunProvenance) -> None:
         self.folder = folder
@@ -106,7 +107,7 @@ class Run(FinishedRun):
 
         They go into `folder`, by default that of the run. `UserError` where it cannot be written.
         """
-        return write_report(self.held, self.folder if folder is None else Path(folder))
+        return write_report(self.held, Path(folder or self.folder))
 
     def _repr_markdown_(self) -> str:
         return markdown_table(self.record)
@@ -115,25 +116,25 @@ class Run(FinishedRun):
 class MapRun(FinishedRun):
     """A finished reversal map: its result, and where its files are."""
 
+    files = MAP_MADE_FROM
     record: MapRecord
     """`headline` and `sentences` in words; `points`, `surface`, `flips`, `joint` in numbers."""
 
     def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
         """Write report.html, map.svg, correlation.svg and table.md, and return their paths."""
-        place = self.folder if folder is None else Path(folder)
-        return write_map(self.record, self.provenance, place)
+        return write_map(self.record, self.provenance, Path(folder or self.folder))
 
 
 class ScanRun(FinishedRun):
     """A finished scan: its result, and where its files are."""
 
+    files = SCAN_MADE_FROM
     record: ScanRecord
     """`headline`, `sentences` and `commands` in words; `errors`, `versions`, ... in numbers."""
 
     def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
         """Write report.html, scan.svg and table.md, and return their paths."""
-        place = self.folder if folder is None else Path(folder)
-        return write_scan(self.record, self.provenance, place)
+        return write_scan(self.record, self.provenance, Path(folder or self.folder))
 
 
 def open_run(folder: str | PathLike[str]) -> "Run | MapRun | ScanRun | Any":
@@ -146,26 +147,15 @@ def open_run(folder: str | PathLike[str]) -> "Run | MapRun | ScanRun | Any":
     """
     place = Path(folder)
     provenance = read_provenance(place)
-    if MAP in provenance.files:
-        return MapRun(place, _record(place, provenance, MAP_MADE_FROM, MapRecord), provenance)
-    if SCAN in provenance.files:
-        return ScanRun(place, _record(place, provenance, SCAN_MADE_FROM, ScanRecord), provenance)
-    if RECORD not in provenance.files:
+    for kind, model in ((MapRun, MapRecord), (ScanRun, ScanRecord)):
+        if kind.files[0] in provenance.files:
+            contents = unseal(place, provenance.files, kind.files)
+            record = parsed(contents[kind.files[0]], place / kind.files[0], model)
+            if provenance.library_hash != record.facts.library_hash:
+                raise UserError(f"the files of {place} do not belong together: {AGAIN}.")
+            return kind(place, record, provenance)
+    if Run.files[0] not in provenance.files:
         for point in entry_points(group="faultpath.runs"):
             if point.name in provenance.files:
                 return point.load()(place)
     return Run(place, read_run(place))
-
-
-_Record = TypeVar("_Record", MapRecord, ScanRecord)
-
-
-def _record(
-    folder: Path, provenance: RunProvenance, names: tuple[str, str], model: type[_Record]
-) -> _Record:
-    """Return the result of a map or scan, after comparing its files with their digests."""
-    contents = unseal(folder, provenance.files, names)
-    record = parsed(contents[names[0]], folder / names[0], model)
-    if provenance.library_hash != record.facts.library_hash:
-        raise UserError(f"the files of {folder} do not belong together: {AGAIN}.")
-    return record

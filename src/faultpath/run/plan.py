@@ -44,6 +44,10 @@ class Treatment(Frozen):
         content = json.dumps(self.model_dump(mode="json"), sort_keys=True)
         return hashlib.sha256(content.encode()).hexdigest()[:16]
 
+    def describe(self) -> str:
+        """Return its faults in words."""
+        return " and ".join(fault.describe() for fault in self.faults) or "correct inputs"
+
 
 class Row(Frozen):
     """Where a treatment stands in the outcome table. Two rows may share a treatment, which runs

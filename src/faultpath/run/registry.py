@@ -19,7 +19,6 @@ from importlib.machinery import (
 from importlib.metadata import entry_points
 from pathlib import Path
 from types import CodeType, ModuleType
-from typing import Any
 
 from faultpath.core.error_source import described, note_system, ours
 from faultpath.core.error_source import place as where
@@ -49,9 +48,9 @@ def installed_systems() -> dict[str, str]:
 def load_system(spec: SystemSpec) -> System:
     """Build the system that `spec` names.
 
-    The name is that of an entry point in the group `faultpath.system`, `module:attribute`, or
+    The name is that of an entry point in the group `faultpath.systems`, `module:attribute`, or
     `path/to/file.py:attribute`, the attribute being `create` where a file is named alone. The
-    attribute is called with the options, read as `trials.options` says, and returns a `System`.
+    attribute is called with the options, see `faultpath.system.options`, and returns a `System`.
     `UserError` for a name, attribute or option that does not exist, a missing package, or a
     module of the system's own of which this process would run another one of that name.
 
@@ -194,12 +193,6 @@ def _file_root(place: str) -> Root:
     loaders = ((ExtensionFileLoader, EXTENSION_SUFFIXES), (_FromSource, SOURCE_SUFFIXES))
     sys.path_importer_cache[folder] = FileFinder(folder, *loaders)
     return Root(f"faultpath_system_{path.stem}_{sha256(bytes(path)).hexdigest()[:8]}", path)
-
-
-def named(name: str) -> Any:
-    """Return what `module:attribute` names."""
-    place, _, attribute = name.partition(":")
-    return getattr(importlib.import_module(place), attribute)
 
 
 def factory_name(name: str) -> str:

@@ -24,13 +24,13 @@ from faultpath.loop import (
     UndeclaredReader,
 )
 from faultpath.run import Treatment
-from faultpath.run.attempt import Died, Done, Raised, Wrong, attempt
+from faultpath.run.attempt import Done, Raised, attempt
 from faultpath.run.check.reads import Enough, Read, ReadLog
 from faultpath.run.check.recording import Recording, signals
 from faultpath.run.execution.dispatch import Built, UndeclaredFile, dispatch
 from faultpath.run.pairing import unlike
 from faultpath.run.store.signals import DRAWN, Signal
-from faultpath.run.work.executor import Executor
+from faultpath.run.work.executor import Executor, Failed, Lost
 from faultpath.system.episodes import EpisodePlant
 from faultpath.system.loop_system import LoopSystem
 from faultpath.system.outcome import Outcome
@@ -96,7 +96,7 @@ class RecordedBlock:
         return {
             (scene, read.step, *read.tap): noted
             for read in self.reads
-            for scene, noted in getattr(read, what).items()
+            for scene, noted in zip(read.scenes, getattr(read, what), strict=False)
             if read.step < ends.get(scene, read.step + 1)
         }
 
@@ -113,15 +113,17 @@ def run_blocks(
     """
     waiting = iter(blocks)
 
-    def handle(block: BlockSpec, reply: RecordedBlock | Died | Wrong) -> None:
-        if isinstance(reply, Wrong) and isinstance(reply.error, UndeclaredFile):
-            reply = RecordedBlock(error=str(reply.error), fails="data files")
-        elif isinstance(reply, Wrong):
-            if isinstance(reply.error, UserError):
-                raise reply.error
-            reply = RecordedBlock(error=described(reply.error), fails=TRIALS)
-        elif isinstance(reply, Died):
+    def handle(block: BlockSpec, reply: RecordedBlock | Lost | Failed) -> None:
+        if isinstance(reply, Lost):
             reply = RecordedBlock(error=reply.how, fails=TRIALS)
+        elif isinstance(reply, Failed):
+            error = reply.error
+            if isinstance(error, UndeclaredFile):
+                reply = RecordedBlock(error=str(error), fails="data files")
+            elif isinstance(error, UserError):
+                raise error
+            else:
+                reply = RecordedBlock(error=described(error), fails=TRIALS)
         handle_reply(block, reply)
 
     dispatch(executor, built, run_block, lambda _: next(waiting, None), handle)
@@ -163,7 +165,7 @@ def run_block(system: System, block: BlockSpec) -> RecordedBlock:
                     break
             if kind == NotFinite.__name__:
                 error, fails = text, "shape and unit"
-        elif isinstance(result, Wrong):
+        elif isinstance(result, Failed):
             error = str(result.error)
             failing = (name for name, kinds in MISTAKES.items() if isinstance(result.error, kinds))
             fails = next(failing, TRIALS)

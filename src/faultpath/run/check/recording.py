@@ -8,6 +8,7 @@ a fault changed it, by how much, and when a fault was in force.
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pkgutil import resolve_name
 from typing import Any, TypeAlias, cast
 
 import numpy as np
@@ -20,7 +21,6 @@ from faultpath.core.errors import SystemMistake
 from faultpath.interface import Provenance
 from faultpath.loop import DeliveryListener, Query, Reading, Tap
 from faultpath.run.attempt import Done
-from faultpath.run.registry import named
 from faultpath.run.store.signals import IN_FORCE, TOGETHER, Signal
 from faultpath.system.composed import ComposedSystem
 from faultpath.system.system import System, TrialReadings
@@ -162,7 +162,7 @@ def signals(system: System, recording: Recording, done: Done) -> list[tuple[Sign
         series.append((IN_FORCE, IN_FORCE, "1", (), force))
     every = trials(recording, done, system.control_dt_s)
     if system.more_signals:
-        more: list[tuple[Signal, ...]] = named(system.more_signals)(system, recording, done)
+        more: list[tuple[Signal, ...]] = resolve_name(system.more_signals)(system, recording, done)
     else:
         more = [_error_signals(system, trial) for trial in every]
     return [

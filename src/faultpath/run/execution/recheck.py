@@ -1,30 +1,35 @@
 """Run a little twice, to find results that do not repeat or that depend on their block.
 
-A few scenes of a unit drawn at random run again without the others, and one scene of another by
-itself, with guarded readings.
+At the end of a run a few scenes of a unit drawn at random run again without the others, and one
+scene of another by itself, with guarded readings. Of a finished run that other code made, whole
+blocks run again, to see whether the code that is here repeats it.
 """
 
 import hashlib
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
 
+from faultpath.core.errors import UserError
 from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.plain import Misread, model_of
 from faultpath.core.results import Frozen
 from faultpath.loop import WrittenTo
-from faultpath.run.attempt import Died, Done, Reply, Wrong
+from faultpath.run.attempt import Done, Reply
 from faultpath.run.execution.schedule import Task, Unit
 from faultpath.run.provenance import Recheck
 from faultpath.run.store.folder import RunFolder
+from faultpath.run.work.executor import Failed, Lost
 from faultpath.system.outcome import Outcome
 
 SAMPLE = 4
 """Scenes of a unit that run again."""
+_OF_EACH = 4
+"""Blocks of each variant that are repeated, under different conditions."""
 _TRAJECTORY = "trajectory_hash"
 
 
@@ -33,7 +38,7 @@ def difference(first: Sequence[Outcome], reply: Reply) -> str:
 
     Trajectories count where both runs have a hash of them.
     """
-    if isinstance(reply, Died):
+    if isinstance(reply, Lost):
         return f"could not be run again ({reply.how}), which differs"
     if not isinstance(reply, Done):
         return f"failed the second time ({reply.error}), which differs"
@@ -143,7 +148,7 @@ class Rechecks:
             for scene in task.scenes
         ]
         wrote, other = "", task.scenes
-        if isinstance(reply, Wrong) and isinstance(reply.error, WrittenTo):
+        if isinstance(reply, Failed) and isinstance(reply.error, WrittenTo):
             wrote, other = str(reply.error), ()
         elif isinstance(reply, Done):
             other = tuple(_gaps(first, reply))
@@ -151,7 +156,7 @@ class Rechecks:
             why=task.recheck,
             unit=task.unit.key,
             variant=treatment.variant,
-            faults=" and ".join(fault.describe() for fault in treatment.faults) or "correct inputs",
+            faults=treatment.describe(),
             seed=treatment.seed,
             scenes=task.scenes,
             unit_scenes=len(task.unit.scenes),
@@ -190,6 +195,53 @@ class Rechecks:
                     "of run() share or one call leaves for the next, and for what is written into "
                     "an array after it was delivered."
                 )
+
+
+def repeat(
+    blocks: Mapping[str, Done],
+    units: Sequence[Unit],
+    folder: RunFolder,
+    work: Callable[[Callable[[int], Task | None], Callable[[Task, Reply], None]], None],
+    changed: str,
+) -> str:
+    """Run a sample of the blocks of a finished run again and say how many trials they hold.
+
+    The sample is always the same of the same run; `changed` is what changed since. `UserError`
+    with the first block that differs.
+    """
+    tasks = [Task(unit, unit.scenes, recheck="sample") for unit in _sample(units)]
+    waiting = iter(tasks)
+
+    def handle_reply(task: Task, reply: Reply) -> None:
+        if isinstance(reply, Failed):
+            raise reply.error
+        treatment = task.unit.treatment
+        if differs := difference(blocks[task.unit.key].outcomes, reply):
+            where = f"{treatment.describe()}, seed {treatment.seed}, {len(task.scenes)} scenes "
+            where += f"from {task.scenes[0]!r}"
+            raise UserError(
+                f"{folder.path} holds a finished run, and what is here does not repeat it (changed "
+                f"since: {changed}): a block of {treatment.variant!r} ({where}) {differs}. "
+                "Nothing in the folder was changed: choose a new one."
+            )
+
+    work(lambda worker: next(waiting, None), handle_reply)
+    count = sum(len(task.scenes) for task in tasks)
+    return (
+        f"{folder.path} was finished before {changed} changed. {count} of its trials ran again and "
+        "are equal to the bit, so the run counts as it is."
+    )
+
+
+def _sample(units: Sequence[Unit]) -> list[Unit]:
+    """Return a few units of each variant, under as many conditions as that gives."""
+    sample: list[Unit] = []
+    by_lot = sorted(units, key=lambda unit: _hash_order(unit.key))
+    for variant in sorted({unit.treatment.variant for unit in units}):
+        of_variant = (unit for unit in by_lot if unit.treatment.variant == variant)
+        conditions = {repr(unit.treatment.faults): unit for unit in of_variant}
+        sample += list(conditions.values())[:_OF_EACH]
+    return sample
 
 
 def _hash_order(*parts: str) -> str:

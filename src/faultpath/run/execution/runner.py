@@ -9,12 +9,11 @@ from pathlib import Path
 
 from faultpath.core.errors import Stopped, UserError
 from faultpath.core.version import __version__
-from faultpath.run.attempt import Reply, Wrong, attempt
+from faultpath.run.attempt import Reply, attempt
 from faultpath.run.code import Code, named
 from faultpath.run.deliveries import Deliveries
 from faultpath.run.execution.dispatch import Built, dispatch
-from faultpath.run.execution.recheck import Rechecks
-from faultpath.run.execution.repeating import repeat
+from faultpath.run.execution.recheck import Rechecks, repeat
 from faultpath.run.execution.schedule import Task, TaskQueue, Unit, units_of
 from faultpath.run.execution.state import RunState, Stop
 from faultpath.run.plan import Plan, Treatment, check_rows, selected
@@ -23,7 +22,7 @@ from faultpath.run.registry import load_system
 from faultpath.run.store.folder import RunFolder
 from faultpath.run.store.manifest import Manifest
 from faultpath.run.trials import Trials
-from faultpath.run.work.executor import Executor, Progress
+from faultpath.run.work.executor import Executor, Failed, Progress
 from faultpath.run.work.processes import local
 from faultpath.system.declared import SceneRef
 from faultpath.system.system import System
@@ -200,6 +199,6 @@ def _failures(state: RunState, folder: RunFolder) -> Iterator[Failure]:
 
 def _attempted(system: System, task: Task) -> Reply:
     reply = attempt(system, task.unit.treatment, task.scenes, task.recheck == "guarded")
-    if isinstance(reply, Wrong):
+    if isinstance(reply, Failed):
         raise reply.error  # not every error survives being sent as a value
     return reply

@@ -25,7 +25,7 @@ from faultpath.core.files.parquet import (
 )
 from faultpath.loop import TapCount
 from faultpath.run.attempt import Done
-from faultpath.run.trials import STATUSES, Trial, Trials
+from faultpath.run.trials import STATUSES, TEXTS, Trial, Trials
 from faultpath.system.outcome import VEHICLE, Outcome, Status, checked
 
 Trace = NDArray[np.float32]
@@ -34,9 +34,8 @@ _ADDRESS = {"variant": TEXT, "condition": TEXT, "seed": INTEGER, "scene": TEXT}
 _PLACE = {"scene_index": INTEGER, "topology": TEXT}
 _END = {"status": TEXT, "time_s": NUMBER}
 _COUNTS = {"faulted_steps": INTEGER, "altered_steps": INTEGER}
-_HASHES = dict.fromkeys(("initial_hash", "disturbance_hash", "planner_noise_hash"), TEXT)
 _TRAJECTORY = {"trajectory_hash": TEXT}
-_RESULT = {**_COUNTS, **_HASHES, **_TRAJECTORY, "error": TEXT}
+_RESULT = {**_COUNTS, **dict.fromkeys(TEXTS, TEXT), "error": TEXT}
 _TRACE = dict.fromkeys(("x_m", "y_m", "z_m"), NUMBERS)
 _MAY_LACK = ("time_s", "error", *_TRACE)
 _TRACES = {**_ADDRESS, **_TRACE}
@@ -70,12 +69,10 @@ def decode_shard(data: bytes, key: str) -> Done:
     """Return one block; `Unreadable` when the bytes are not the shard of `key`, whole."""
     schema = {"scene": TEXT, **_END, **_RESULT, **_TRACE}
     rows, notes = decode(data, schema, _MAY_LACK, more=NUMBER)
-    if _TAPS not in notes:
-        raise Unreadable("it is of an earlier version, which kept no delivery log")
     if notes.get(_KEY) != key:
         raise Unreadable("it was written under another key")
     try:
-        taps = _TAP_COUNTS.validate_json(notes[_TAPS])
+        taps = _TAP_COUNTS.validate_json(notes.get(_TAPS, ""))
     except ValidationError as error:
         raise Unreadable("its delivery log cannot be read") from error
     return Done(tuple(_outcome(row, _trace(row)) for row in rows), taps)
