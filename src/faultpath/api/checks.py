@@ -34,7 +34,7 @@ def check(
     Raises:
         UserError: There is no such system, variant or library, or it cannot be built.
     """
-    from faultpath.run.check.check import check_system, chosen_variants
+    from faultpath.run.check.check import chosen_variants, run_checks
 
     question, chosen, _, display = begin("check", CheckQuestion, system, arguments, progress)
     conditions: dict[str, dict[str, tuple[Fault, ...]]] = {}
@@ -48,7 +48,7 @@ def check(
         def note(done: int, known: int | None) -> None:
             show(Progress(done, known, f"{done} of {known} runs" if known else f"{done} runs"))
 
-        return check_system(chosen.system, chosen.spec, question, note, conditions)
+        return run_checks(chosen.system, chosen.spec, question, note, conditions)
 
 
 @with_question_signature(TraceQuestion)

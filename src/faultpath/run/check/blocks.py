@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -44,6 +44,8 @@ MISTAKES: dict[str, tuple[type[Exception], ...]] = {
 }
 """Errors by the check that reports them; any other error keeps trials from their end."""
 TRIALS = "trials end"
+Delivery: TypeAlias = tuple[str, int, str, str]
+"""Scene, control step, channel and reader."""
 
 
 @dataclass(frozen=True)
@@ -78,21 +80,26 @@ class RecordedBlock:
     fails: str = ""
     """The check that reports the error."""
 
-    def readings(self, dt_s: float, what: str = "clean") -> dict[tuple[str, int, str, str], Any]:
-        """Return what is noted of each reading by scene, step, channel and reader, while it ran.
-
-        `what` is a field of `Read` by scene: a digest, or the sum.
-        """
-        if (dt_s, what) not in self._readings:
-            self._readings[dt_s, what] = self._by_reading(dt_s, what)
-        return self._readings[dt_s, what]
+    dt_s: float = 0.0
+    """Seconds of a control step."""
 
     @cached_property
-    def _readings(self) -> dict[tuple[float, str], dict[tuple[str, int, str, str], Any]]:
-        return {}
+    def held(self) -> Mapping[Delivery, bytes]:
+        """Digest of what the source held, of each reading while its scene ran."""
+        return self._by_delivery("clean")
 
-    def _by_reading(self, dt_s: float, what: str) -> dict[tuple[str, int, str, str], Any]:
-        ends = {outcome.scene: outcome.steps(dt_s) for outcome in self.outcomes}
+    @cached_property
+    def got(self) -> Mapping[Delivery, bytes]:
+        """Digest of what the reader got."""
+        return self._by_delivery("got")
+
+    @cached_property
+    def sums(self) -> Mapping[Delivery, float]:
+        """Sum of the finite numbers that the source held."""
+        return self._by_delivery("sums")
+
+    def _by_delivery(self, what: str) -> dict[Delivery, Any]:
+        ends = {outcome.scene: outcome.steps(self.dt_s) for outcome in self.outcomes}
         return {
             (scene, read.step, *read.tap): noted
             for read in self.reads
@@ -172,12 +179,13 @@ def run_block(system: System, block: BlockSpec) -> RecordedBlock:
         if error:
             break
     return RecordedBlock(
-        () if error else tuple(outcomes),
-        tuple(counts),
-        tuple(reads),
-        tuple(signals_by_scene),
-        error,
-        fails,
+        outcomes=() if error else tuple(outcomes),
+        counts=tuple(counts),
+        reads=tuple(reads),
+        signals=tuple(signals_by_scene),
+        error=error,
+        fails=fails,
+        dt_s=system.control_dt_s,
     )
 
 
@@ -187,7 +195,7 @@ def coarsest(run: RecordedBlock) -> float:
     return max((float(np.finfo(k).eps) for k in kinds if k.startswith("float")), default=0.0)
 
 
-def gap_of(first: RecordedBlock, again: RecordedBlock, dt_s: float) -> float:
+def gap_of(first: RecordedBlock, again: RecordedBlock) -> float:
     """Return by how much of their size metrics and sums of readings differ at most; infinity for
     other ends. Nothing that ran differs from nothing."""
     by_scene = {outcome.scene: outcome for outcome in first.outcomes}
@@ -197,8 +205,10 @@ def gap_of(first: RecordedBlock, again: RecordedBlock, dt_s: float) -> float:
             return math.inf
 
     def numbers(run: RecordedBlock) -> dict[tuple[Any, ...], float]:
-        read = run.readings(dt_s, "sums")
-        sums = {((channel, at), scene, step): v for (scene, step, channel, at), v in read.items()}
+        sums = {
+            ((channel, at), scene, step): value
+            for (scene, step, channel, at), value in run.sums.items()
+        }
         metrics = ((outcome.scene, outcome.metrics.items()) for outcome in run.outcomes)
         return sums | {(name, scene): v or 0.0 for scene, named in metrics for name, v in named}
 

@@ -52,7 +52,7 @@ class Report(Result):
         return tuple(sentence for check in self.checks for sentence in check.failures)
 
 
-def check_system(
+def run_checks(
     system: System,
     spec: SystemSpec,
     question: CheckQuestion,

@@ -109,12 +109,11 @@ def _independence(name: str, seen: Seen) -> Check:
     if len(seen.scenes) < 2:
         return Check(name=name, says="one scene has no others beside it", judged=False)
     failures, remarks, open_ended = list[str](), list[str](), False
-    dt_s = seen.system.control_dt_s
     for variant, first in seen.firsts():
         if not (differs := seen.differs(variant, "part")):
             continue
         lead = f"Variant '{variant}' run in another order, without some of the scenes beside it,"
-        gap, rounding = (gap_of(first, seen.of(variant, why), dt_s) for why in ("part", "rounded"))
+        gap, rounding = (gap_of(first, seen.of(variant, why)) for why in ("part", "rounded"))
         if gap > _SEVERAL * max(rounding, coarsest(first)):
             failures.append(
                 f"{lead} {differs}; let nothing that scenes of one call of run() share decide a "

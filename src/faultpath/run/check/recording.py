@@ -94,7 +94,7 @@ def _numbers(value: Any) -> Values | None:
 
 
 @dataclass(frozen=True)
-class Trial(TrialReadings):
+class RecordedTrial(TrialReadings):
     """One scene of a recording, while its trial ran."""
 
     recording: Recording
@@ -118,10 +118,10 @@ class Trial(TrialReadings):
         return values
 
 
-def trials(recording: Recording, done: Done, dt_s: float) -> list[Trial]:
+def trials(recording: Recording, done: Done, dt_s: float) -> list[RecordedTrial]:
     """Return each trial of a recorded run."""
     steps = (outcome.steps(dt_s) for outcome in done.outcomes)
-    return [Trial(recording, scene, count) for scene, count in enumerate(steps)]
+    return [RecordedTrial(recording, scene, count) for scene, count in enumerate(steps)]
 
 
 def signals(system: System, recording: Recording, done: Done) -> list[tuple[Signal, ...]]:
@@ -182,7 +182,7 @@ def signals(system: System, recording: Recording, done: Done) -> list[tuple[Sign
     ]
 
 
-def _error_signals(system: System, trial: Trial) -> tuple[Signal, ...]:
+def _error_signals(system: System, trial: RecordedTrial) -> tuple[Signal, ...]:
     errors = system.errors
     if errors is None:
         return ()

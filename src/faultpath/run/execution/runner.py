@@ -91,8 +91,7 @@ def run_plan(
             the folder.
         system: Saves building it here when the caller has.
         shared: Lets plans with other treatments use the folder one after the other: a treatment
-        that one of
-            them ran is there for the next; the folder's tables are those of the last.
+            that one of them ran is there for the next; the folder's tables are those of the last.
         executor: Runs trials in place of `workers` processes, and keeps its own for the next plan.
         time_limit_s: Seconds that a worker may take over one block, or one scene of a block that
             failed, before it is stopped; by default what the system says, or an hour.
