@@ -7,8 +7,6 @@ from os import PathLike
 from pathlib import Path
 from typing import NoReturn
 
-from faultpath.run.work.executor import Progress
-
 from faultpath.analyses.tables import markdown
 from faultpath.api.display import Display, display
 from faultpath.api.folders import read_provenance
@@ -19,6 +17,7 @@ from faultpath.core.errors import Stopped, UserError
 from faultpath.core.files.atomic import write_text
 from faultpath.run.provenance import RunProvenance
 from faultpath.run.store.folder import AGAIN, DELIVERIES, unseal
+from faultpath.run.work.executor import Progress
 from faultpath_paper.answers import Reproduction
 from faultpath_paper.central import of_page
 from faultpath_paper.evidence.table import EvidenceTable

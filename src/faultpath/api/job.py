@@ -22,7 +22,7 @@ from faultpath.run.code import system_code
 from faultpath.run.execution.provenance import run_provenance
 from faultpath.run.execution.runner import Failure, RunResult, run_plan
 from faultpath.run.provenance import RunProvenance
-from faultpath.run.question import Asked, Request, Running, ScanCall, ask
+from faultpath.run.question import Request, Running, ScanCall, UserQuestion, ask
 from faultpath.run.store.folder import keyed
 from faultpath.run.work.executor import Executor, Progress
 from faultpath.system.checks import library_of
@@ -30,7 +30,7 @@ from faultpath.system.declared import Library
 from faultpath.system.system import System
 
 _Call = TypeVar("_Call", bound=Callable[..., Any])
-_Asked = TypeVar("_Asked", bound=Request)
+_Question = TypeVar("_Question", bound=Request)
 _Request = TypeVar("_Request", bound=Running | ScanCall)
 _Analysis = TypeVar("_Analysis", bound=Analysis[Any])
 _Finished = TypeVar("_Finished", bound=Run | MapRun | ScanRun)
@@ -40,7 +40,7 @@ _LONGEST_NAME = 180
 """Longest name of a run folder; file systems take 255 bytes."""
 
 
-def with_question_signature(model: type[Asked]) -> Callable[[_Call], _Call]:
+def with_question_signature(model: type[UserQuestion]) -> Callable[[_Call], _Call]:
     """Give a function whose last parameter is `**arguments` signature and help of a model."""
 
     def described(function: _Call) -> _Call:
@@ -71,11 +71,11 @@ def with_question_signature(model: type[Asked]) -> Callable[[_Call], _Call]:
 
 def begin(
     call: str,
-    model: type[_Asked],
+    model: type[_Question],
     system: str | PathLike[str] | System,
     arguments: Mapping[str, object],
     progress: bool | Display,
-) -> tuple[_Asked, Chosen, Library, Display]:
+) -> tuple[_Question, Chosen, Library, Display]:
     """Read a question, build its system and find its scenes; `call` is the name of the function.
 
     `UserError` for what does not fit, named as its caller names it, for a library that does not

@@ -74,6 +74,7 @@ def judge(
         result = _stored(folder, paired, system)
         write_text(folder / RECORD, as_text(record), folder)
         provenance = run_provenance(folder, MADE_FROM, result, started, shown.command, local(0))
+        # What was read stands where an audit names the data files that ran.
         code = provenance.code.model_copy(update={"data": sources})
         provenance = amend(folder, provenance.model_copy(update={"code": code}), MADE_FROM)
     run = Run(folder, ReportInput(record, provenance, system, paired.trials))

@@ -64,7 +64,7 @@ class Run(FinishedRun):
 
     def __init__(self, folder: Path, source: ReportInput) -> None:
         super().__init__(folder, source.record, source.provenance)
-        self.held = source
+        self.inputs = source
         """All that its pages are made from."""
 
     @property
@@ -75,7 +75,7 @@ class Run(FinishedRun):
     @property
     def failed(self) -> int:
         """Number of trials in which the program raised an error; each voids its pair."""
-        return int(self.held.trials.failed.sum())
+        return int(self.inputs.trials.failed.sum())
 
     @property
     def broken(self) -> bool:
@@ -100,14 +100,14 @@ class Run(FinishedRun):
 
         Its `to_pandas` makes a DataFrame where pandas is installed.
         """
-        return read_table(encode_outcomes(self.held.trials))
+        return read_table(encode_outcomes(self.inputs.trials))
 
     def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
         """Write report.html and table.md, and return their paths.
 
         They go into `folder`, by default that of the run. `UserError` where it cannot be written.
         """
-        return write_report(self.held, Path(folder or self.folder))
+        return write_report(self.inputs, Path(folder or self.folder))
 
     def _repr_markdown_(self) -> str:
         return markdown_table(self.record)

@@ -245,9 +245,9 @@ def _check_own(start: Path | str, folder: Path) -> None:
         seen.add(name := waiting[0])
         files = (folder / name / "__init__.py", folder / f"{name}.py")
         own = next((file for file in files if file.is_file()), None)
-        if own is None or ours(name) or not (found := places(name)):
+        if own is None or ours(name) or not (origins := places(name)):
             continue
-        origin = found[0] / own.name if found[0].is_dir() else found[0]
+        origin = origins[0] / own.name if origins[0].is_dir() else origins[0]
         if os.path.realpath(own) != os.path.realpath(origin) and kind_of(origin) == "local":
             raise UserError(
                 f"{start} imports {name!r}, which is {origin} in this process and not its own "

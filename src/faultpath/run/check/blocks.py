@@ -84,7 +84,7 @@ class RecordedBlock:
     """Seconds of a control step."""
 
     @cached_property
-    def held(self) -> Mapping[Delivery, bytes]:
+    def clean(self) -> Mapping[Delivery, bytes]:
         """Digest of what the source held, of each reading while its scene ran."""
         return self._by_delivery("clean")
 

@@ -42,7 +42,7 @@ def unanswered(seen: Seen) -> Iterator[tuple[str, tuple[str, str]]]:
             replace(outcome, faulted_steps=0, altered_steps=0, trajectory_hash="")
             for outcome in run.outcomes
         )
-        alike = all(first.held.get(key, value) == value for key, value in run.held.items())
+        alike = all(first.clean.get(key, value) == value for key, value in run.clean.items())
         if alike and not (ends and difference(first.outcomes, Done(ends, ()))):
             yield variant, tap
 
@@ -107,7 +107,7 @@ def _effect(seen: Seen, variant: str, tap: tuple[str, str]) -> tuple[bool, str]:
     runs = [seen.of(variant, why, min(taps)) for why in (HELD, MOVED)]
     queried = {read.source for read in reads if read.asks}  # an answer depends on the request too
     handed = {scene: step for step, scene, at in _unlike(runs, "got")[::-1] if at in taps}
-    for step, scene, at in _unlike(runs, "held"):
+    for step, scene, at in _unlike(runs, "clean"):
         if sources[at] in output - queried and step < handed.get(scene, math.inf):
             return True, (
                 f"had no effect, and '{module}' wrote another {sources[at]} at step {step} in "

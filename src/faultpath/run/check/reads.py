@@ -56,7 +56,7 @@ class Read:
     @property
     def altered(self) -> int:
         """Number of scenes in which the reader got something else than the source held."""
-        return sum(held != got for held, got in zip(self.clean, self.got, strict=True))
+        return sum(clean != got for clean, got in zip(self.clean, self.got, strict=True))
 
     def take(self, clean: HostArray, got: HostArray) -> None:
         """Take in a value and what the reader got of it."""
@@ -72,8 +72,8 @@ class Read:
         # A query has several answers in a step: each digest goes on from the one before.
         before = list(zip(self.clean, self.got, strict=True)) or [(b"", b"")] * len(clean)
         self.clean, self.got = [], []
-        for (held, received), row, row_got in zip(before, clean, got, strict=False):
-            content, content_got = held + row.tobytes(), received + row_got.tobytes()
+        for (one, two), row, row_got in zip(before, clean, got, strict=False):
+            content, content_got = one + row.tobytes(), two + row_got.tobytes()
             self.clean.append(_digest(content))
             alike = content == content_got
             self.got.append(self.clean[-1] if alike else _digest(content_got))

@@ -78,7 +78,7 @@ class Seen:
             return f"fails where the first did not ({error})"
         if not again.outcomes:
             return ""
-        odd = [key for key, digest in again.held.items() if first.held.get(key) != digest]
+        odd = [key for key, digest in again.clean.items() if first.clean.get(key) != digest]
         by_scene = {outcome.scene: outcome for outcome in first.outcomes}
         before = [by_scene[outcome.scene] for outcome in again.outcomes]
         words = difference(before, Done(again.outcomes, ()))

@@ -149,7 +149,7 @@ def dispatch(
         raise UserError(f"the time limit is {limit_s:g} s: give a number of seconds above 0")
     limit_s = limit_s or built.system.time_limit_s or LONGEST_S
     call = partial(built.work, work)
-    if not executor.in_process:
+    if executor.count:
         call = partial(_elsewhere, built.job, work)
     running: dict[int, _Running[T]] = {}
     again: list[tuple[T, bool]] = []
@@ -196,7 +196,7 @@ def _elsewhere(job: BuildSpec, work: Callable[[System, Any], Any], task: Any) ->
     Raises where the system cannot be built or is another one here.
     """
     if not _built or _built[0].job != job:
-        _built.clear()
+        _built.clear()  # before: two systems may not fit into memory, and a failed one leaves none
         try:
             _built.append(_build(job))
         except (Exception, SystemExit) as error:

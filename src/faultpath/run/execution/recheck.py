@@ -15,6 +15,7 @@ from typing import Any, Literal
 import numpy as np
 
 from faultpath.core.errors import UserError
+from faultpath.core.files.atomic import write_text
 from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.plain import Misread, model_of
 from faultpath.core.results import Frozen
@@ -165,7 +166,8 @@ class Rechecks:
             other=other,
         )
         kept = _Kept(rechecks=tuple(recheck for _, recheck in sorted(self._kept.items())))
-        self._folder.save_rechecks(f"{kept.model_dump_json(indent=1)}\n")
+        text = kept.model_dump_json(indent=1) + "\n"
+        write_text(self._folder.rechecks, text, self._folder.path)
 
     def of_this_run(self) -> tuple[Recheck, ...]:
         """Return what ran again of the units of this run."""

@@ -51,6 +51,8 @@ def units_of(
     ]
     for block, ids in parts.items():
         for treatment, treatment_key, treatment_content in dumped:
+            # The names here are part of the keys of stored trials: with another name all of them
+            # would be run again.
             content = {
                 "system": fingerprint,
                 "treatment": treatment_content,

@@ -203,8 +203,8 @@ def _outcome(row: Mapping[str, Any], trace: Trace | None, untimed: bool = False)
     if min(outcome.faulted_steps, outcome.altered_steps) < 0:
         wrong = "a count of steps is below 0"
     elif not outcome.failed:
-        verdict = checked(replace(outcome, time_s=1.0) if unknown else outcome, metrics)
-        wrong = verdict.error if verdict.failed else None
+        result = checked(replace(outcome, time_s=1.0) if unknown else outcome, metrics)
+        wrong = result.error if result.failed else None
     elif fields["time_s"] is not None and not np.isfinite(fields["time_s"]):
         wrong = "time_s is not finite"
     if wrong:
