@@ -1,7 +1,7 @@
 """Run a plan into a folder, from wherever an earlier invocation left it."""
 
 import logging
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
@@ -16,7 +16,7 @@ from faultpath.run.execution.dispatch import Built, dispatch
 from faultpath.run.execution.recheck import Rechecks, repeat
 from faultpath.run.execution.schedule import Task, TaskQueue, Unit, units_of
 from faultpath.run.execution.state import RunState, Stop
-from faultpath.run.plan import Plan, Treatment, check_rows, selected
+from faultpath.run.plan import Plan, Treatment, check_rows
 from faultpath.run.provenance import Recheck
 from faultpath.run.registry import load_system
 from faultpath.run.store.folder import RunFolder
@@ -24,7 +24,6 @@ from faultpath.run.store.manifest import Manifest
 from faultpath.run.trials import Trials
 from faultpath.run.work.executor import Executor, Failed, Progress
 from faultpath.run.work.processes import local
-from faultpath.system.declared import SceneRef
 from faultpath.system.system import System
 
 _log = logging.getLogger("faultpath")
@@ -122,9 +121,11 @@ def run_plan(
     try:
         with manager as workforce:
             work = partial(dispatch, workforce, built, _attempted, limit_s=time_limit_s)
-            of_it = _units(plan, built, earlier) if earlier else ()
-            if earlier and (blocks := run.finished((unit.key, unit.scenes) for unit in of_it)):
-                manifest, units = earlier, of_it
+            # A finished run of other code counts as it is once a sample of it repeats: else a
+            # changed message would have all of its trials run again.
+            theirs = _units(plan, built, earlier) if earlier else ()
+            if earlier and (blocks := run.finished((unit.key, unit.scenes) for unit in theirs)):
+                manifest, units = earlier, theirs
                 changed = named(earlier.code.changed(code.state)) or "faultpath"
                 notice(repeat(blocks, units, run, work, changed))
             state = RunState(plan, library, units, run, stop)
@@ -171,19 +172,10 @@ def _units(plan: Plan, built: Built, manifest: Manifest) -> tuple[Unit, ...]:
     `UserError` for scenes or rows that cannot be run.
     """
     library, system = built.library, built.system
-    scenes: Sequence[SceneRef] = selected(plan, library)
-    if plan.scenes_per_analysis:
-        scenes = sorted(scenes, key=lambda scene: plan.scenes.index(scene.id))
-    check_rows(plan.rows, system.variants)
     fingerprint = f"{manifest.faultpath_version} {manifest.code.digest}"
-    size = system.scenes_a_block(len(library.scenes))
-    units: list[Unit] = []
-    for part, treatments in plan.parts().items():
-        chosen = [scene for scene in scenes if scene.id in part] if part else scenes
-        units += units_of(
-            treatments, chosen, size, library, fingerprint, plan.scenes_per_analysis, part
-        )
-    return tuple(units)
+    units = units_of(plan, library, system.scenes_a_block(len(library.scenes)), fingerprint)
+    check_rows(plan.rows, system.variants)
+    return units
 
 
 def _failures(state: RunState, folder: RunFolder) -> Iterator[Failure]:
