@@ -28,7 +28,7 @@ from faultpath.run.execution.recheck import difference
 from faultpath.run.provenance import RunProvenance
 from faultpath.run.question import AuditQuestion
 from faultpath.run.store.signals import SIGNALS, Signal, encode_signals
-from faultpath.run.store.tables import TrialAddress, address_of
+from faultpath.run.store.tables import TrialAddress
 from faultpath.run.work.executor import Executor
 from faultpath.run.work.processes import local
 from faultpath.system.checks import library_of
@@ -166,9 +166,11 @@ def changes(run: RunProvenance, system: System, state: CodeState) -> tuple[str, 
 
 def outcomes_at(trials: Trials) -> dict[TrialAddress, Outcome]:
     """Return the trials of a run that ran to their end."""
-    addresses = (address_of(trials, row) for row in range(len(trials)))
-    every = zip(addresses, trials, strict=True)
-    return {address: trial.outcome for address, trial in every if not trial.outcome.failed}
+    return {
+        TrialAddress(trial.variant, trial.condition, trial.seed, trial.outcome.scene): trial.outcome
+        for trial in trials
+        if not trial.outcome.failed
+    }
 
 
 def run_again(

@@ -53,6 +53,7 @@ def judged(seen: Seen) -> tuple[Check, ...]:
         none = Check(name=name, says="no variant ran to its end", judged=False)
         checks.append(judge(name, seen) if count else none)
     for at, check in enumerate(checks):
+        # Backwards: of several runs with the same error the first one names it.
         stopped = {
             run.error: f"'{variant}'{f', {why}' if why.startswith(UNDER) else ''}"
             for (variant, why, _), run in reversed(seen.runs.items())

@@ -177,6 +177,7 @@ def dispatch(
                 if false_starts > _FALSE_STARTS:
                     raise WorkerLost(f"worker processes failed to start: {end.how}")
                 again.append((ended.task, ended.tried))
+        # After the completions, so that a task that has just ended was in time.
         for worker, attempt in tuple(running.items()):
             if attempt.overran(limit_s, built.job.system.name):
                 executor.cancel(worker)

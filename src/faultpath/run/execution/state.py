@@ -154,7 +154,11 @@ class RunState:
     def findings(self) -> Iterator[str]:
         """Yield what is wrong with the system though its trials ended: it takes one scene alone."""
         units = self.units
-        sound = [unit for unit in units if not any(o.failed for o in self._outcomes_of(unit))]
+        sound = [
+            unit
+            for unit in units
+            if not any(self.outcomes[unit.treatment_key, scene].failed for scene in unit.scenes)
+        ]
         errors = [
             text.partition("\n")[0].removeprefix(_WHOLE)
             for text in (self._folder.load_failure(unit.key) for unit in sound)
@@ -166,9 +170,6 @@ class RunState:
                 f"together, and none when each ran alone: {errors[0]}. A reading holds a value for "
                 "each scene of its block: `faultpath check` says what to fix."
             )
-
-    def _outcomes_of(self, unit: Unit) -> list[Outcome]:
-        return [self.outcomes[unit.treatment_key, scene] for scene in unit.scenes]
 
     def _enter(self, unit: Unit, shard: Done) -> None:
         self.outcomes.update(

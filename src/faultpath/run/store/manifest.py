@@ -36,6 +36,7 @@ def read_manifest(path: Path) -> Manifest | None:
     try:
         data = contents(path, LARGEST_TEXT)
         content: Any = read_json(data)
+        # Before the model, which other formats do not fit.
         if content["format"] != FORMAT:
             raise UserError(
                 f"{path.parent} was written in format {content['format']} and this faultpath reads "

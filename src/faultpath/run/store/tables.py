@@ -138,19 +138,18 @@ def decode_traces(data: bytes) -> dict[TrialAddress, Trace]:
 
 def traces_of(trials: Trials) -> dict[TrialAddress, Trace]:
     """Return the traces of trials by where these stand."""
-    return {address_of(trials, row): trials.traces[row] for row in sorted(trials.traces)}
-
-
-def address_of(trials: Trials, row: int) -> TrialAddress:
-    """Return where a trial stands in its plan."""
-    place: list[int] = trials.places[row].tolist()
-    variant, condition, seed, scene = place
-    return TrialAddress(
-        trials.variants[variant],
-        trials.conditions[condition],
-        trials.seeds[seed],
-        trials.scenes[scene].id,
-    )
+    traces: dict[TrialAddress, Trace] = {}
+    for row in sorted(trials.traces):
+        place: list[int] = trials.places[row].tolist()
+        variant, condition, seed, scene = place
+        address = TrialAddress(
+            trials.variants[variant],
+            trials.conditions[condition],
+            trials.seeds[seed],
+            trials.scenes[scene].id,
+        )
+        traces[address] = trials.traces[row]
+    return traces
 
 
 def _address(row: Row) -> TrialAddress:
