@@ -69,10 +69,12 @@ def decode_shard(data: bytes, key: str) -> Done:
     """Return one block; `Unreadable` when the bytes are not the shard of `key`, whole."""
     schema = {"scene": TEXT, **_END, **_RESULT, **_TRACE}
     rows, notes = decode(data, schema, _MAY_LACK, more=NUMBER)
+    if _TAPS not in notes:
+        raise Unreadable("it is of an earlier version, which kept no delivery log")
     if notes.get(_KEY) != key:
         raise Unreadable("it was written under another key")
     try:
-        taps = _TAP_COUNTS.validate_json(notes.get(_TAPS, ""))
+        taps = _TAP_COUNTS.validate_json(notes[_TAPS])
     except ValidationError as error:
         raise Unreadable("its delivery log cannot be read") from error
     return Done(tuple(_outcome(row, _trace(row)) for row in rows), taps)
