@@ -107,7 +107,7 @@ class Run(FinishedRun):
 
         They go into `folder`, by default that of the run. `UserError` where it cannot be written.
         """
-        return write_report(self.inputs, Path(folder or self.folder))
+        return write_report(self.inputs, self.folder if folder is None else Path(folder))
 
     def _repr_markdown_(self) -> str:
         return markdown_table(self.record)
@@ -122,7 +122,8 @@ class MapRun(FinishedRun):
 
     def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
         """Write report.html, map.svg, correlation.svg and table.md, and return their paths."""
-        return write_map(self.record, self.provenance, Path(folder or self.folder))
+        place = self.folder if folder is None else Path(folder)
+        return write_map(self.record, self.provenance, place)
 
 
 class ScanRun(FinishedRun):
@@ -134,7 +135,8 @@ class ScanRun(FinishedRun):
 
     def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
         """Write report.html, scan.svg and table.md, and return their paths."""
-        return write_scan(self.record, self.provenance, Path(folder or self.folder))
+        place = self.folder if folder is None else Path(folder)
+        return write_scan(self.record, self.provenance, place)
 
 
 def open_run(folder: str | PathLike[str]) -> "Run | MapRun | ScanRun | Any":
