@@ -16,10 +16,9 @@ if TYPE_CHECKING:
     from faultpath.api.audit import audit
     from faultpath.api.checks import check
     from faultpath.api.comparing import compare
-    from faultpath.api.designs import map
     from faultpath.api.judging import judge
+    from faultpath.api.rounds import map, scan
     from faultpath.api.runs import Run, open_run
-    from faultpath.api.scanning import scan
     from faultpath.api.systems import load_system
     from faultpath.core.errors import UserError
     from faultpath.core.streams import generator
@@ -51,9 +50,9 @@ _HOMES = {
     "generator": "faultpath.core.streams",
     "judge": "faultpath.api.judging",
     "load_system": "faultpath.api.systems",
-    "map": "faultpath.api.designs",
+    "map": "faultpath.api.rounds",
     "open_run": "faultpath.api.runs",
-    "scan": "faultpath.api.scanning",
+    "scan": "faultpath.api.rounds",
 }
 
 

@@ -79,7 +79,7 @@ def test_what_is_read_back_is_what_was_held(run):
     again = faultpath.open_run(str(run.folder))
     assert again.record == run.record
     assert again.provenance == run.provenance
-    held, read = run.held, again.held
+    held, read = run.inputs, again.inputs
     assert read.system == held.system
     assert (run.folder / OUTCOMES).read_bytes() == encode_outcomes(held.trials)
     assert encode_outcomes(read.trials) == encode_outcomes(held.trials)

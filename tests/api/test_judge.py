@@ -53,8 +53,8 @@ def test_an_audits_own_outcomes_are_decided_as_the_audit(tmp_path: Path) -> None
 
     opened = faultpath.open_run(folder)
     assert opened.record == again.record
-    assert encode_outcomes(opened.held.trials) == encode_outcomes(again.held.trials)
-    assert report_page(opened.held) == report_page(again.held)
+    assert encode_outcomes(opened.inputs.trials) == encode_outcomes(again.inputs.trials)
+    assert report_page(opened.inputs) == report_page(again.inputs)
     page = (folder / "report.html").read_text()
     assert "Other tools ran the trials" in page
     assert "Only what a tap delivers" not in page

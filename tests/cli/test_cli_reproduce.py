@@ -10,7 +10,7 @@ from cli_runs import faultpath as command
 from faultpath_paper.cells import QUICK, published_claims
 from faultpath_paper.pages import table_4
 from faultpath_paper.reproduction import ReproductionRun, carry_out
-from faultpath_paper.run import ReproductionPlan
+from faultpath_paper.run import ChosenPages
 from faultpath_paper.verb import show
 from faultpath_quadrotor.plant import module
 
@@ -21,7 +21,7 @@ from faultpath.core.errors import UserError
 from faultpath.report.tables import MISSING
 from faultpath.run.work.executor import Here
 
-PLAN = ReproductionPlan((table_4.PAGE,), QUICK)
+CHOSEN = ChosenPages((table_4.PAGE,), QUICK)
 DISPLAY = Display(command=("faultpath", "reproduce"))
 
 
@@ -32,7 +32,7 @@ def done(
     """A reproduction whose flights are short."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(module, "CONTROL_STEPS", 8)
-        yield carry_out(PLAN, Job(tmp_path_factory.mktemp("quick"), Here(), DISPLAY))
+        yield carry_out(CHOSEN, Job(tmp_path_factory.mktemp("quick"), Here(), DISPLAY))
 
 
 def test_a_reproduction_leaves_its_files_claims_and_table(
@@ -53,7 +53,7 @@ def test_a_reproduction_leaves_its_files_claims_and_table(
 
 
 def test_the_same_again_runs_nothing_and_opens_as_it_was_left(done: ReproductionRun) -> None:
-    again = carry_out(PLAN, Job(done.folder.parent, Here(), DISPLAY))
+    again = carry_out(CHOSEN, Job(done.folder.parent, Here(), DISPLAY))
     assert '"blocks_computed": 0' in (again.folder / "provenance.json").read_text("utf-8")
     assert again.record.tables == done.record.tables
     opened = faultpath.open_run(done.folder)

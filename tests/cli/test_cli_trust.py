@@ -10,9 +10,9 @@ import pytest
 from cli_runs import ROOT, audit, edit, faultpath
 from odd_inputs import sign
 
+from faultpath.api.systems import check_named
 from faultpath.core.errors import UserError
 from faultpath.run import SystemSpec
-from faultpath.run.trust import check_named
 
 MINE = f"""
 import sys

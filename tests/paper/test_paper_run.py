@@ -10,7 +10,7 @@ from faultpath_paper.cells import HELD_OUT, PAPER, QUICK, Cell, Profile, calibra
 from faultpath_paper.entries import centimetres, success
 from faultpath_paper.page import Page, TableRow, TableSpec
 from faultpath_paper.pages import PAGES, table_1, table_2
-from faultpath_paper.run import ReproductionPlan, conclude, measure_all, plan, read_results, save
+from faultpath_paper.run import ChosenPages, chosen_pages, conclude, measure_all, read_results, save
 
 from faultpath.api.display import Display
 from faultpath.api.job import Job
@@ -40,7 +40,7 @@ def short() -> Iterator[None]:
 def run(tmp_path_factory: pytest.TempPathFactory, selection_held_out: None, short: None) -> Path:
     """A folder with the whole of page one."""
     folder = tmp_path_factory.mktemp("run")
-    reproduction = ReproductionPlan((ONE,), TINY)
+    reproduction = ChosenPages((ONE,), TINY)
     job = Job(folder, Here(), SILENT)
     flown = flights.fly(reproduction.legs(), folder, job.run, lambda now: None)
     evidence = measure_all(reproduction, folder, 0, lambda done, total: None)
@@ -74,14 +74,14 @@ def test_a_profile_takes_its_seeds_and_joins_cells_that_share_trials() -> None:
 
 def test_what_there_is_not_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UserError, match=r"no page 'table-9'; choose from .*table-1"):
-        plan(["table-9"], "quick")
+        chosen_pages(["table-9"], "quick")
     with pytest.raises(UserError, match="unknown profile 'huge'; choose one of quick, paper"):
-        plan([], "huge")
+        chosen_pages([], "huge")
     with pytest.raises(UserError, match="holds no finished reproduction"):
         read_results(tmp_path)
 
 
 def test_all_pages_are_the_whole_paper() -> None:
-    assert plan([], "paper").whole
-    assert plan(["table-4"], "paper").place == "table-4"
-    assert [page.name for page in PAGES] == [page.name for page in plan([], "quick").pages]
+    assert chosen_pages([], "paper").whole
+    assert chosen_pages(["table-4"], "paper").place == "table-4"
+    assert [page.name for page in PAGES] == [page.name for page in chosen_pages([], "quick").pages]

@@ -207,16 +207,22 @@ def test_a_plan_that_cannot_be_run_is_refused(tmp_path, wrong, sentence):
 
 
 def test_a_key_names_everything_that_decides_a_result():
-    treatments = [Treatment(variant="v", seed=seed) for seed in (0, 1)]
-    scenes = [SceneRef(f"s{i}", i) for i in (0, 1)]
-    here, other = (Library("ten", tuple(scenes), digest) for digest in ("hash", "other"))
+    first = Treatment(variant="v")
+    row = Row(variant="v", condition="correct", seed=0, treatment=first)
+    other_row = row.model_copy(update={"treatment": Treatment(variant="v", seed=1)})
+    one, other_treatment, other_scene = (
+        plan((scene,)).model_copy(update={"rows": (of,)})
+        for scene, of in (("s0", row), ("s0", other_row), ("s1", row))
+    )
+    scenes = tuple(SceneRef(f"s{i}", i) for i in (0, 1))
+    here, other = (Library("ten", scenes, digest) for digest in ("hash", "other"))
     cases = (
-        (treatments[:1], scenes[:1], 4, here, "fingerprint"),
-        (treatments[:1], scenes[:1], 1, here, "fingerprint"),  # the size of blocks decides none
-        (treatments[1:], scenes[:1], 4, here, "fingerprint"),
-        (treatments[:1], scenes[1:], 4, here, "fingerprint"),
-        (treatments[:1], scenes[:1], 4, other, "fingerprint"),
-        (treatments[:1], scenes[:1], 4, here, "another"),
+        (one, here, 4, "fingerprint"),
+        (one, here, 1, "fingerprint"),  # the size of blocks decides none
+        (other_treatment, here, 4, "fingerprint"),
+        (other_scene, here, 4, "fingerprint"),
+        (one, other, 4, "fingerprint"),
+        (one, here, 4, "another"),
     )
     keys = [units_of(*case)[0].key for case in cases]
     assert keys[0] == keys[1]

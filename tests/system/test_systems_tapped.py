@@ -13,7 +13,8 @@ from faultpath.core.errors import SystemMistake
 from faultpath.faults import parse_fault
 from faultpath.loop import Batch, Inputs, NotDelivered, Port
 from faultpath.run import Treatment
-from faultpath.run.attempt import Wrong, attempt
+from faultpath.run.attempt import attempt
+from faultpath.run.work.executor import Failed
 from faultpath.system import ComposedSystem, shared_objects, tapped, writes
 
 
@@ -194,7 +195,7 @@ def test_receipts_count_what_was_read_and_a_fault_after_a_write_is_not_delivered
     taps = {tap.reader: tap for tap in attempted(drive(0.0, late=True), "flux:scale=3").taps}
     assert taps["control.flux"].deliveries == taps["control.flux"].faulted_steps == 2 * 6
     late = attempted(drive(0.1), "flux:scale=3,onset=5")
-    assert isinstance(late, Wrong)
+    assert isinstance(late, Failed)
     assert isinstance(late.error, NotDelivered)
     assert "flux -> observer.flux" in str(late.error)
 

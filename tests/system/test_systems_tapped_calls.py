@@ -13,7 +13,8 @@ from faultpath.core.errors import SystemMistake
 from faultpath.faults import parse_fault
 from faultpath.loop import Batch, Inputs, NotDelivered, Port
 from faultpath.run import Treatment
-from faultpath.run.attempt import Wrong, attempt
+from faultpath.run.attempt import attempt
+from faultpath.run.work.executor import Failed
 from faultpath.system import ComposedSystem, tapped, writes
 
 
@@ -193,6 +194,6 @@ def test_a_fault_stops_where_the_method_is_never_called() -> None:
     made = system(one=cruise(limits=False))
     faults = parse_fault("speed:scale=3", made.interface, {}, 0.1)
     reply = attempt(made, Treatment(variant="one", faults=faults), ("seed/1",))
-    assert isinstance(reply, Wrong)
+    assert isinstance(reply, Failed)
     assert isinstance(reply.error, NotDelivered)
     assert "speed -> limits.speed" in str(reply.error)

@@ -63,9 +63,7 @@ class Flown:
         return hashlib.sha256(fingerprints.encode()).hexdigest()[:16]
 
 
-def plan_legs(
-    cells: Iterable[Cell], profile: Profile, options: Mapping[str, str]
-) -> tuple[Leg, ...]:
+def legs_of(cells: Iterable[Cell], profile: Profile, options: Mapping[str, str]) -> tuple[Leg, ...]:
     """Return the legs of a profile, setting by setting in the order of `cells`.
 
     `options` are added to those of every setting. Raises `UserError` for an option that does not

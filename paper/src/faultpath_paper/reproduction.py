@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Sequence
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from typing import NoReturn
@@ -26,10 +27,10 @@ from faultpath_paper.report.terminal import ledger_markdown
 from faultpath_paper.report.words import headline
 from faultpath_paper.run import (
     RESULTS,
-    ReproductionPlan,
+    ChosenPages,
+    chosen_pages,
     conclude,
     measure_all,
-    plan,
     read_results,
     save,
 )
@@ -105,25 +106,25 @@ def reproduce(
     arguments = dict(locals())
     check_executor(executor)
     named = (pages,) if isinstance(pages, str) else tuple(pages)
-    work = plan(named, profile, {} if device is None else {"device": device})
-    place = Path(folder) if folder else work.folder(f"reproduction-{work.profile.name}")
+    chosen = chosen_pages(named, profile, {} if device is None else {"device": device})
+    place = Path(folder) if folder else chosen.folder(f"reproduction-{chosen.profile.name}")
     terminal = display(progress, "reproduce", arguments | {"pages": named})
 
-    with executor_of(work.system, workers, executor) as workforce:
-        return carry_out(work, Job(place, workforce, terminal, {"time_limit_s": time_limit_s}))
+    with executor_of(chosen.system, workers, executor) as workforce:
+        return carry_out(chosen, Job(place, workforce, terminal, time_limit_s))
 
 
-def carry_out(plan: ReproductionPlan, job: Job) -> ReproductionRun:
-    """Run, measure, conclude and write the files of a plan.
+def carry_out(chosen: ChosenPages, job: Job) -> ReproductionRun:
+    """Run, measure, conclude and write the files of a reproduction.
 
-    Raises `Stopped` on Ctrl-C, and `UserError` where the plan cannot be run.
+    Raises `Stopped` on Ctrl-C, and `UserError` where it cannot be run.
     """
     display, folder, executor = job.display, job.folder, job.executor
-    legs = plan.legs()
+    legs = chosen.legs()
     with display.progress("Running") as show:
         flown = fly(legs, folder, job.run, show)
     evidence = EvidenceTable({})
-    if plan.measurements():
+    if chosen.measurements():
         workers = (os.cpu_count() or 1) if executor.name else executor.count
         try:
             with display.progress("Measuring") as show:
@@ -131,17 +132,17 @@ def carry_out(plan: ReproductionPlan, job: Job) -> ReproductionRun:
                 def measuring(done: float, total: float) -> None:
                     show(Progress(done, total, f"{done:.0f} of {total:.0f} flights"))
 
-                evidence = measure_all(plan, folder, workers, measuring)
+                evidence = measure_all(chosen, folder, workers, measuring)
         except KeyboardInterrupt:
             raise Stopped(
                 f"interrupted; what is finished is kept in {folder}, and the same "
                 f"{display.called} resumes."
             ) from None
-    results = plan.results(flown.trials, evidence)
-    place = folder / plan.place
-    record = conclude(plan, results)
+    results = chosen.results(flown.trials, evidence)
+    place = folder / chosen.place
+    record = conclude(chosen, results)
     result = save(place, flown, results, record)
-    provenance = job.finish(result, plan.system, (*RESULTS, DELIVERIES), place)
+    provenance = replace(job, folder=place).finish(result, chosen.system, (*RESULTS, DELIVERIES))
     write_pages(place, record, provenance)
     return ReproductionRun(place, record, provenance)
 

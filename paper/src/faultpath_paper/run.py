@@ -32,7 +32,7 @@ from faultpath_paper.evidence.table import (
     read_evidence,
     write_evidence,
 )
-from faultpath_paper.flights import Flown, Leg, plan_legs
+from faultpath_paper.flights import Flown, Leg, legs_of
 from faultpath_paper.page import Page
 from faultpath_paper.pages import PAGES
 from faultpath_paper.results import Results
@@ -44,7 +44,7 @@ RESULTS = (CONCLUSIONS, OUTCOMES, EVIDENCE)
 
 
 @dataclass(frozen=True)
-class ReproductionPlan:
+class ChosenPages:
     """Pages to reproduce, with their profile and options of the system."""
 
     pages: tuple[Page, ...]
@@ -65,7 +65,7 @@ class ReproductionPlan:
     def legs(self) -> tuple[Leg, ...]:
         """Return the legs to run."""
         cells = [cell for page in self.pages for cell in page.cells]
-        return plan_legs(cells, self.profile, self.options)
+        return legs_of(cells, self.profile, self.options)
 
     def measurements(self) -> dict[Measurement, Measurement]:
         """Return the measurements of the pages, each with the one that this run makes for it."""
@@ -93,10 +93,10 @@ class ReproductionPlan:
         return Results(trials, evidence, self.system.library(HELD_OUT).content_hash)
 
 
-def plan(
+def chosen_pages(
     names: Sequence[str], profile: str, options: Mapping[str, str] | None = None
-) -> ReproductionPlan:
-    """Return the plan for some pages, or for all; `UserError` for a name that does not exist."""
+) -> ChosenPages:
+    """Return some pages, or all; `UserError` for a name that does not exist."""
     known = {page.name: page for page in PAGES}
     for name in names:
         if name not in known:
@@ -104,11 +104,11 @@ def plan(
     if profile not in PROFILES:
         raise UserError(f"unknown profile '{profile}'; choose one of {', '.join(PROFILES)}.")
     pages = tuple(page for page in PAGES if page.name in names) if names else PAGES
-    return ReproductionPlan(pages, PROFILES[profile], options or {})
+    return ChosenPages(pages, PROFILES[profile], options or {})
 
 
 def measure_all(
-    plan: ReproductionPlan, folder: Path, workers: int, progress: Callable[[float, float], None]
+    chosen: ChosenPages, folder: Path, workers: int, progress: Callable[[float, float], None]
 ) -> EvidenceTable:
     """Measure on recorded windows what `folder` does not hold yet.
 
@@ -116,25 +116,25 @@ def measure_all(
     """
     from faultpath_paper.evidence.quantities import measure  # it loads torch
 
-    measurements = plan.measurements()
+    measurements = chosen.measurements()
     unique = tuple(dict.fromkeys(measurements.values()))
-    table = measure(unique, plan.profile.scenes, folder / "windows", workers, progress)
+    table = measure(unique, chosen.profile.scenes, folder / "windows", workers, progress)
     return EvidenceTable({m: table.values(own) for m, own in measurements.items()})
 
 
-def conclude(plan: ReproductionPlan, results: Results) -> Reproduction:
+def conclude(chosen: ChosenPages, results: Results) -> Reproduction:
     """Evaluate pages and claims."""
-    library = plan.system.library(HELD_OUT)
-    built = [part for page in plan.pages for part in page.build(results)]
+    library = chosen.system.library(HELD_OUT)
+    built = [part for page in chosen.pages for part in page.build(results)]
     return Reproduction(
-        profile=plan.profile.name,
+        profile=chosen.profile.name,
         ledger=ledger(
             results,
             library.name,
             library.content_hash,
-            len(library.scenes[: plan.profile.scenes]),
-            plan.profile.seeds,
-            only_run=not plan.whole,
+            len(library.scenes[: chosen.profile.scenes]),
+            chosen.profile.seeds,
+            only_run=not chosen.whole,
         ),
         tables=tuple(part for part in built if isinstance(part, Table)),
         figures=tuple(part for part in built if isinstance(part, Sweep)),

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import torch
 
-from faultpath.plugin.recording import Done, Recording, Signal, Trial, Values, added, trials
+from faultpath.plugin.recording import Done, RecordedTrial, Recording, Signal, Values, added, trials
 from faultpath_quadrotor.device import arithmetic
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.predictors.kinematic import LinearDrag
@@ -41,7 +41,7 @@ def quadrotor_signals(
     return by_trial
 
 
-def _errors(trial: Trial) -> list[Signal]:
+def _errors(trial: RecordedTrial) -> list[Signal]:
     def delivered(channel: str, place: str) -> Values:
         return trial.got(channel, f"predictor.{place}")
 

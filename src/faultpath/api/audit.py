@@ -1,7 +1,7 @@
 """`faultpath.audit`: run the treatments of one question, decide, and write the run folder."""
 
 import os
-from collections.abc import Callable
+from collections.abc import Sequence
 from contextlib import suppress
 from functools import partial
 from os import PathLike
@@ -21,7 +21,7 @@ from faultpath.api.folders import (
     read_provenance,
 )
 from faultpath.api.job import Job, run, with_question_signature
-from faultpath.api.replaying import outcomes_at, run_again, shown_first
+from faultpath.api.replaying import Replayed, outcomes_at, run_again, shown_first
 from faultpath.api.runs import Run
 from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import write_file, write_text
@@ -35,7 +35,14 @@ from faultpath.run.execution.runner import RunResult
 from faultpath.run.findings import Finding, Unrecorded, Unrepeated
 from faultpath.run.question import AuditCall
 from faultpath.run.store.folder import OUTCOMES, read_regular, seal
-from faultpath.run.store.signals import SIGNALS, Signals, decode_signals, encode_signals
+from faultpath.run.store.signals import (
+    SIGNALS,
+    Signal,
+    Signals,
+    decode_signals,
+    encode_signals,
+)
+from faultpath.run.store.tables import TrialAddress
 from faultpath.run.work.executor import Progress
 from faultpath.system.system import System
 
@@ -104,26 +111,21 @@ def audits(
 
 
 def carry_out(audit: AuditAnalysis, job: Job, signals: bool = True) -> Run:
-    """Run, decide, record `signals`, and write what the run folder's pages are made from.
-
-    Raises `Stopped` on Ctrl-C, and `UserError` where the plan cannot be run or nothing can be
-    compared.
-    """
+    """Run, decide, record `signals`, and write what the run folder's pages are made from."""
     folder, system, question = job.folder, audit.system, audit.question
     shown = system_shown(system, (question.baseline, question.repair), audit.plan.scenes)
     _, result = job.trials(audit)
-
-    conclude = partial(audit.conclude, result.trials)
-    library_hash = audit.facts.library_hash
-    record = concluded(folder, library_hash, partial(conclude, result.deliveries))
+    record = with_stored(folder, audit.conclude(result.trials, result.deliveries))
     recorded = _kept_signals(folder, result)
     if signals:
-        recorded, finding = _recorded(audit, job, record, result, recorded)
+        replays, finding = _run_first_scenes(audit, job, record, result, recorded)
+        recorded |= {replay.address: replay.signals for replay in replays if replay.signals}
+        finding = finding or _unrepeated(replays)
         if finding:
             job.display.say(describe(finding))
             findings = (*result.deliveries.findings, finding)
             deliveries = result.deliveries.model_copy(update={"findings": findings})
-            record = concluded(folder, library_hash, partial(conclude, deliveries))
+            record = with_stored(folder, audit.conclude(result.trials, deliveries))
     recorded = dict(sorted(recorded.items()))
     write_text(folder / RECORD, as_text(record), folder)
     write_text(folder / SYSTEM, shown.model_dump_json(indent=1) + "\n", folder)
@@ -131,25 +133,24 @@ def carry_out(audit: AuditAnalysis, job: Job, signals: bool = True) -> Run:
         write_file(folder / SIGNALS, encode_signals(recorded), folder)
     files = (*MADE_FROM, SIGNALS) if recorded else MADE_FROM
     provenance = job.finish(result, system, files)
-    source = ReportInput(record, provenance, shown, result.trials, recorded)
-    return Run(folder, source)
+    return Run(folder, ReportInput(record, provenance, shown, result.trials, recorded))
 
 
-def concluded(folder: Path, library_hash: str, conclude: Callable[[], AuditResult]) -> AuditResult:
-    """Return what is concluded; a record that the folder holds of these trials stands in it: see
-    `with_earlier_analyses`.
+def with_stored(folder: Path, record: AuditResult) -> AuditResult:
+    """Return a record with the one that the folder holds of the same trials, if any, among its
+    earlier analyses.
 
-    `UserError` for a record that cannot be read: taken for none, earlier analyses would be lost.
+    `UserError` for a stored record that cannot be read: taken for none, earlier analyses would be
+    lost.
     """
     if not os.path.lexists(folder / RECORD):
-        return conclude()
+        return record
     before = parsed(read_regular(folder / RECORD), folder / RECORD, AuditResult)
-    if before.facts.library_hash != library_hash:  # other results
-        return conclude()
-    return with_earlier_analyses(conclude(), (before,))
+    same_trials = before.facts.library_hash == record.facts.library_hash
+    return with_earlier_analyses(record, (before,)) if same_trials else record
 
 
-def _kept_signals(folder: Path, result: RunResult) -> Signals:
+def _kept_signals(folder: Path, result: RunResult) -> dict[TrialAddress, tuple[Signal, ...]]:
     """Return the signals that the folder holds of these very trials; none where they changed."""
     with suppress(OSError, UserError, Unreadable):
         earlier = read_provenance(folder)
@@ -160,14 +161,15 @@ def _kept_signals(folder: Path, result: RunResult) -> Signals:
     return {}
 
 
-def _recorded(
+def _run_first_scenes(
     audit: AuditAnalysis,
     job: Job,
     record: AuditResult,
     result: RunResult,
     recorded: Signals,
-) -> tuple[Signals, Finding | None]:
-    """Run the scenes that the report begins with once more; return signals and a finding.
+) -> tuple[Sequence[Replayed], Finding | None]:
+    """Run the scenes that the report begins with again, where they are not `recorded`; return
+    their trials, and a finding where they could not be run.
 
     What goes wrong here is a finding, never an error of the audit.
     """
@@ -180,7 +182,7 @@ def _recorded(
         if (at.scene, at.seed) in few and at.condition in named and at not in recorded
     ]
     if not missing:
-        return recorded, None
+        return (), None
     try:
         with job.display.progress("Recording signals") as show:
 
@@ -188,29 +190,26 @@ def _recorded(
                 count = f"{done} of {total} batches of {counted(len(few), 'scene')}"
                 show(Progress(done, total, count))
 
-            replays = run_again(before, audit.plan, audit.system, job.executor, missing, note)
+            return run_again(before, audit.plan, audit.system, job.executor, missing, note), None
     except UserError as error:
-        return recorded, Unrecorded(error=str(error))
+        return (), Unrecorded(error=str(error))
     except KeyboardInterrupt:
         called = job.display.called
         job.display.say(f"No signals were recorded; run the same {called} again to have them.")
-        return recorded, None
-    recorded = {
-        **recorded,
-        **{replay.address: replay.signals for replay in replays if replay.signals},
-    }
-    unlike = [replay for replay in replays if replay.deviation]
+        return (), None
+
+
+def _unrepeated(replays: Sequence[Replayed]) -> Unrepeated | None:
+    """Return a finding where trials came out otherwise when they were run again."""
+    unlike = [(replay.address, replay.deviation) for replay in replays if replay.deviation]
     if not unlike:
-        return recorded, None
-    (first, *_) = unlike
-    assert first.deviation is not None
-    at = first.address
-    finding = Unrepeated(
+        return None
+    at, deviation = unlike[0]
+    return Unrepeated(
         trials=len(unlike),
         of=len(replays),
         variant=at.variant,
         condition=at.condition,
         scene=at.scene,
-        deviation=first.deviation,
+        deviation=deviation,
     )
-    return recorded, finding

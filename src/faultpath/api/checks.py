@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 from faultpath.analyses.planning import faults_by_condition
 from faultpath.api.display import Display
 from faultpath.api.job import begin, with_question_signature
-from faultpath.api.systems import Chosen
 from faultpath.faults import Fault
 from faultpath.run.question import CheckQuestion, TraceQuestion
 from faultpath.run.work.executor import Progress
@@ -35,7 +34,7 @@ def check(
     Raises:
         UserError: There is no such system, variant or library, or it cannot be built.
     """
-    from faultpath.run.check.check import check_system, chosen_variants
+    from faultpath.run.check.check import chosen_variants, run_checks
 
     question, chosen, _, display = begin("check", CheckQuestion, system, arguments, progress)
     conditions: dict[str, dict[str, tuple[Fault, ...]]] = {}
@@ -49,7 +48,7 @@ def check(
         def note(done: int, known: int | None) -> None:
             show(Progress(done, known, f"{done} of {known} runs" if known else f"{done} runs"))
 
-        return check_system(chosen.system, chosen.spec, question, note, conditions)
+        return run_checks(chosen.system, chosen.spec, question, note, conditions)
 
 
 @with_question_signature(TraceQuestion)
@@ -69,12 +68,7 @@ def trace(
         UserError: There is no such system, variant, library or scene, the fault reaches no
             module, or the run fails.
     """
-    question, chosen, _, _ = begin("api.trace", TraceQuestion, system, arguments, progress)
-    return traced(question, chosen)
-
-
-def traced(question: TraceQuestion, chosen: Chosen) -> "TraceReport":
-    """Return the trace of a system that is built; raises as `trace`."""
     from faultpath.run.check.tracing import trace_system
 
+    question, chosen, _, _ = begin("api.trace", TraceQuestion, system, arguments, progress)
     return trace_system(chosen.system, chosen.spec, question)

@@ -93,5 +93,5 @@ def compare(runs: Sequence[str | PathLike[str] | Run]) -> RunComparison:
         if run.folder.resolve() in places:
             raise UserError(f"{run.folder} is given twice: give each run once.")
         places.add(run.folder.resolve())
-        compared.append(Compared(number, str(run.folder), run.held))
+        compared.append(Compared(number, str(run.folder), run.inputs))
     return RunComparison(together(compared))

@@ -23,7 +23,7 @@ from faultpath.run.code import system_code
 from faultpath.run.execution.provenance import run_provenance
 from faultpath.run.execution.runner import Failure, RunResult, run_plan
 from faultpath.run.provenance import RunProvenance
-from faultpath.run.question import Asked, Request, Running, ScanCall, ask
+from faultpath.run.question import Request, Running, ScanCall, UserQuestion, ask
 from faultpath.run.store.folder import keyed
 from faultpath.run.work.executor import Executor, Progress
 from faultpath.system.checks import library_of
@@ -31,9 +31,9 @@ from faultpath.system.declared import Library
 from faultpath.system.system import System
 
 _Call = TypeVar("_Call", bound=Callable[..., Any])
-_Asked = TypeVar("_Asked", bound=Request)
+_Question = TypeVar("_Question", bound=Request)
 _Request = TypeVar("_Request", bound=Running | ScanCall)
-_Plan = TypeVar("_Plan", bound=Analysis[Any])
+_Analysis = TypeVar("_Analysis", bound=Analysis[Any])
 _Finished = TypeVar("_Finished", bound=Run | MapRun | ScanRun)
 
 _ERRORS_SHOWN = 5
@@ -41,7 +41,7 @@ _LONGEST_NAME = 180
 """Longest name of a run folder; file systems take 255 bytes."""
 
 
-def with_question_signature(model: type[Asked]) -> Callable[[_Call], _Call]:
+def with_question_signature(model: type[UserQuestion]) -> Callable[[_Call], _Call]:
     """Give a function whose last parameter is `**arguments` signature and help of a model."""
 
     def described(function: _Call) -> _Call:
@@ -72,11 +72,11 @@ def with_question_signature(model: type[Asked]) -> Callable[[_Call], _Call]:
 
 def begin(
     call: str,
-    model: type[_Asked],
+    model: type[_Question],
     system: str | PathLike[str] | System,
     arguments: Mapping[str, object],
     progress: bool | Display,
-) -> tuple[_Asked, Chosen, Library, Display]:
+) -> tuple[_Question, Chosen, Library, Display]:
     """Read a question, build its system and find its scenes; `call` is the name of the function.
 
     `UserError` for what does not fit, named as its caller names it, for a library that does not
@@ -106,68 +106,65 @@ class Job:
     folder: Path
     executor: Executor
     display: Display
-    how: Mapping[str, Any] = field(default_factory=dict[str, Any])
-    """Further arguments of `run_plan`, such as a time limit."""
+    time_limit_s: float | None = None
+    """Of a block; `None` for what the system says."""
     started: datetime = field(default_factory=lambda: datetime.now(UTC))
 
     def run(
         self, plan: Plan, system: System, show: Show, folder: Path | None = None, **how: Any
     ) -> RunResult:
-        """Run a plan, into the job's folder unless another is given; see `run_plan` for `how`.
-
-        Raises `Stopped` on Ctrl-C, and `UserError` where the plan cannot be run.
-        """
-        every: dict[str, Any] = {"notice": self.display.say, **self.how, **how}
+        """Run a plan, into the job's folder unless another is given; see `run_plan` for `how`."""
+        how = {"notice": self.display.say, "time_limit_s": self.time_limit_s, **how}
         place, executor = folder or self.folder, self.executor
-        return run_plan(plan, place, progress=show, system=system, executor=executor, **every)
+        return run_plan(plan, place, progress=show, system=system, executor=executor, **how)
 
     def trials(self, analysis: Analysis[Items]) -> tuple[Items, RunResult]:
-        """Run the rounds of an analysis, and return what they amount to beside all trials; the
-        folder of one with several rounds serves other ones too. Raises as `run`.
+        """Run the rounds of an analysis; return what they amount to, and the result of all trials.
+
+        The folder of an analysis of several rounds serves other such analyses too.
         """
-        system, rounds, say = analysis.system, analysis.rounds(), self.display.say
-        part, computed, noticed = next(rounds), 0, set[str]()
-        if system.backend:
-            say(f"Computing with {system.backend}.")
-        if part.notice:
-            say(part.notice)
+        rounds = analysis.rounds()
+        current, several = next(rounds), bool(analysis.noun)
+        computed, noticed = 0, set[str]()
+        if analysis.system.backend:
+            self.display.say(f"Computing with {analysis.system.backend}.")
+        if current.notice:
+            self.display.say(current.notice)
 
         def notice(text: str) -> None:
+            # Later rounds keep what this call has just run: only the first says what it found.
             key = "Kept " if text.startswith("Kept ") else text
             if key not in noticed:
                 noticed.add(key)
-                say(text)
+                self.display.say(text)
 
         with self.display.progress("Running") as show:
 
             def note(state: Progress) -> None:
-                whole = (state.total or 0.0) * max(1.0, part.most / part.items)
-                remark = f"{part.items} {analysis.noun}"
-                show(state.within(max(state.done, whole), remark=remark))
+                if several:
+                    whole = (state.total or 0.0) * max(1.0, current.most / current.items)
+                    remark = f"{current.items} {analysis.noun}"
+                    state = state.within(max(state.done, whole), remark=remark)
+                show(state)
 
-            run = partial(self.run, system=system, show=note, notice=notice, shared=True)
-            several = bool(analysis.noun)
-            if not several:
-                run = partial(self.run, system=system, show=show, stop=part.stop)
+            run = partial(self.run, system=analysis.system, show=note, notice=notice)
             while True:
-                result = run(part.plan, recheck=not several)
-                noticed.add("Kept ")  # what later rounds keep, this call has run itself
+                result = run(current.plan, shared=several, recheck=not several, stop=current.stop)
+                noticed.add("Kept ")
                 computed += result.blocks_computed
                 try:
-                    part = rounds.send(result.trials)
+                    current = rounds.send(result.trials)
                 except StopIteration as end:
                     items = end.value
                     break
-            if several:
-                result = run(part.plan)
+            if several:  # once more, with all trials there, to run a few of them a second time
+                result = run(current.plan, shared=True)
                 trials = len(result.trials)
-                show(Progress(trials, trials, f"{part.items} {analysis.noun}"))
+                show(Progress(trials, trials, f"{current.items} {analysis.noun}"))
         blocks = result.blocks_kept + result.blocks_computed
         return items, replace(result, blocks_computed=computed, blocks_kept=blocks - computed)
 
-    def finish(
-        self, result: RunResult, system: System, names: Iterable[str], folder: Path | None = None
-    ) -> RunProvenance:
+    def finish(self, result: RunResult, system: System, names: Iterable[str]) -> RunProvenance:
         """Display failures and write the provenance, with digests of the files that `names` are.
 
         A command shows findings with what was decided; a call from Python is shown them here.
@@ -188,7 +185,7 @@ class Job:
             for finding in result.findings:
                 say(describe(finding))
         return run_provenance(
-            folder or self.folder,
+            self.folder,
             names,
             result,
             self.started,
@@ -201,8 +198,8 @@ class Job:
 def run(
     call: str,
     model: type[_Request],
-    analysis_of: Callable[[System, SystemSpec, _Request, Library], _Plan],
-    carry_out: Callable[[_Plan, Job], _Finished],
+    analysis_of: Callable[[System, SystemSpec, _Request, Library], _Analysis],
+    carry_out: Callable[[_Analysis, Job], _Finished],
     system: str | PathLike[str] | System,
     arguments: Mapping[str, object],
     progress: bool | Display,
@@ -217,8 +214,7 @@ def run(
     place = run_folder(request, chosen, analysis.named)
     workers = 0 if chosen.own else request.workers
     with executor_of(chosen.system, workers, request.executor) as executor:
-        how = {"time_limit_s": request.time_limit_s}
-        finished = carry_out(analysis, Job(place, executor, display, how))
+        finished = carry_out(analysis, Job(place, executor, display, request.time_limit_s))
     finished.report()
     return finished
 
@@ -245,6 +241,7 @@ def run_folder(question: Running | ScanCall, chosen: Chosen, named: Sequence[str
         name = f"{name[:_LONGEST_NAME]}-{hashlib.sha256(name.encode()).hexdigest()[:12]}"
     if question.folder is None and not chosen.own:
         return keyed(Path("runs"), name, system_code(chosen.system, chosen.spec).state)
+    # No hash tells two objects of a class apart, so each call has a folder of its own.
     stamp = datetime.now().strftime("%Y%m%d-%H%M%S-%f")
     place = question.folder or Path("runs") / f"{name}-{stamp}"
     if chosen.own and (place / "manifest.json").exists():

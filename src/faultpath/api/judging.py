@@ -13,14 +13,13 @@ import numpy as np
 
 from faultpath.analyses.decide import decide
 from faultpath.analyses.judging import PairedResults, pair_results
-from faultpath.analyses.model import AuditResult
-from faultpath.api.audit import concluded
+from faultpath.api.audit import with_stored
 from faultpath.api.display import Display, display
 from faultpath.api.folders import MADE_FROM, RECORD, SYSTEM, as_text
 from faultpath.api.job import with_question_signature
 from faultpath.api.runs import Run
 from faultpath.core.errors import UserError
-from faultpath.core.files.atomic import begin, locked, write_file, write_text
+from faultpath.core.files.atomic import begin, locked, write_text
 from faultpath.interface import Interface
 from faultpath.report.inputs import ReportInput
 from faultpath.report.sentences.findings import describe
@@ -31,9 +30,7 @@ from faultpath.run.question import ask
 from faultpath.run.received.files import read_results
 from faultpath.run.received.question import JudgeQuestion
 from faultpath.run.shown import SystemShown, VariantShown
-from faultpath.run.store.folder import DELIVERIES, OUTCOMES, TRACES
-from faultpath.run.store.tables import encode_outcomes, encode_traces
-from faultpath.run.trials import Trials
+from faultpath.run.store.folder import RunFolder
 from faultpath.run.work.processes import local
 
 
@@ -68,19 +65,17 @@ def judge(
     folder = question.folder or _folder(paired, sources)
     if (folder / "manifest.json").exists():
         raise UserError(f"{folder} holds an audit's trials: give another folder with --out.")
-
-    def conclude() -> AuditResult:
-        return decide(
-            paired.question, paired.facts, paired.conditions, paired.trials, paired.findings
-        )
-
     begin(folder)
-    record = concluded(folder, paired.facts.library_hash, conclude)
+    record = decide(
+        paired.question, paired.facts, paired.conditions, paired.trials, paired.findings
+    )
+    record = with_stored(folder, record)
     with locked(folder, shown.say):
         system = _system(paired.question)
         result = _stored(folder, paired, system)
         write_text(folder / RECORD, as_text(record), folder)
         provenance = run_provenance(folder, MADE_FROM, result, started, shown.command, local(0))
+        # What was read stands where an audit names the data files that ran.
         code = provenance.code.model_copy(update={"data": sources})
         provenance = amend(folder, provenance.model_copy(update={"code": code}), MADE_FROM)
     run = Run(folder, ReportInput(record, provenance, system, paired.trials))
@@ -129,12 +124,8 @@ def _stored(folder: Path, paired: PairedResults, system: SystemShown) -> RunResu
         for variant, condition, seed in rows
     )
     deliveries = Deliveries(rows=taps, findings=paired.findings)
-    outcomes = encode_outcomes(trials)
-    write_file(folder / OUTCOMES, outcomes, folder)
-    write_file(folder / TRACES, encode_traces(Trials.of(())), folder)
-    write_text(folder / DELIVERIES, deliveries.model_dump_json(indent=1) + "\n", folder)
+    digest = RunFolder(folder).save_tables(trials, deliveries)
     write_text(folder / SYSTEM, system.model_dump_json(indent=1) + "\n", folder)
-    digest = hashlib.sha256(outcomes).hexdigest()
     return RunResult(
         trials=trials,
         deliveries=deliveries,

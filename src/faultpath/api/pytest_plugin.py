@@ -1,7 +1,5 @@
 """The fixture `faultpath` for pytest, found by its entry point: audits and judgements in tests."""
 
-from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,18 +20,18 @@ class Audits:
         """Return `faultpath.audit(system, ...)`."""
         import faultpath
 
-        return self._run(partial(faultpath.audit, system), arguments)
+        return faultpath.audit(system, **self._arguments(arguments))
 
     def judge(self, results: Any, **arguments: Any) -> "Run":
         """Return `faultpath.judge(results, ...)`."""
         import faultpath
 
-        return self._run(partial(faultpath.judge, results), arguments)
+        return faultpath.judge(results, **self._arguments(arguments))
 
-    def _run(self, call: "Callable[..., Run]", arguments: dict[str, Any]) -> "Run":
+    def _arguments(self, arguments: dict[str, Any]) -> dict[str, Any]:
         self._count += 1
         place = self._folder / f"faultpath-{self._count}"
-        return call(**{"folder": place, "progress": False, **arguments})
+        return {"folder": place, "progress": False, **arguments}
 
 
 @pytest.fixture

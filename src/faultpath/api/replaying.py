@@ -11,7 +11,7 @@ from faultpath.analyses.model import AuditResult
 from faultpath.analyses.pairs import by_scene, read_pairs
 from faultpath.analyses.parting import Heard, Parting, parting
 from faultpath.api.folders import RECORD
-from faultpath.api.systems import choose
+from faultpath.api.systems import check_named, choose
 from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import write_file
 from faultpath.core.text import unknown
@@ -29,8 +29,7 @@ from faultpath.run.findings import Deviation
 from faultpath.run.provenance import RunProvenance
 from faultpath.run.question import AuditQuestion
 from faultpath.run.store.signals import SIGNALS, Signal, encode_signals
-from faultpath.run.store.tables import TrialAddress, address_of
-from faultpath.run.trust import check_named
+from faultpath.run.store.tables import TrialAddress
 from faultpath.run.work.executor import Executor
 from faultpath.run.work.processes import local
 from faultpath.system.checks import library_of
@@ -133,8 +132,8 @@ def replay(
     addresses = [at for at in before if at.scene in scenes and at.condition in named]
 
     def note(treatment: Treatment, done: int, total: int) -> None:
-        faults = " and ".join(fault.describe() for fault in treatment.faults) or "correct inputs"
-        say(f"Ran {treatment.variant}, seed {treatment.seed}, again: {faults} ({done} of {total}).")
+        what = f"{treatment.variant}, seed {treatment.seed}, again: {treatment.describe()}"
+        say(f"Ran {what} ({done} of {total}).")
 
     with local(0) as executor:
         trials = run_again(before, plan, system, executor, addresses, note)
@@ -168,9 +167,11 @@ def changes(run: RunProvenance, system: System, state: CodeState) -> tuple[str, 
 
 def outcomes_at(trials: Trials) -> dict[TrialAddress, Outcome]:
     """Return the trials of a run that ran to their end."""
-    addresses = (address_of(trials, row) for row in range(len(trials)))
-    every = zip(addresses, trials, strict=True)
-    return {address: trial.outcome for address, trial in every if not trial.outcome.failed}
+    return {
+        TrialAddress(trial.variant, trial.condition, trial.seed, trial.outcome.scene): trial.outcome
+        for trial in trials
+        if not trial.outcome.failed
+    }
 
 
 def run_again(

@@ -3,7 +3,7 @@
 from importlib.metadata import entry_points
 from os import PathLike
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, ClassVar
 
 import pyarrow as pa
 
@@ -11,10 +11,8 @@ from faultpath.analyses.map.model import MapResult
 from faultpath.analyses.model import AuditResult
 from faultpath.analyses.scan.model import ScanResult
 from faultpath.api.folders import (
-    MAP,
+    MADE_FROM,
     MAP_MADE_FROM,
-    RECORD,
-    SCAN,
     SCAN_MADE_FROM,
     parsed,
     read_provenance,
@@ -36,6 +34,9 @@ from faultpath.run.store.tables import encode_outcomes
 
 class FinishedRun:
     """A finished run: its result, how it was made, and where its files are."""
+
+    files: ClassVar[tuple[str, ...]] = MADE_FROM
+    """What its pages are made from, the result first."""
 
     def __init__(self, folder: Path, record: Any, provenance: RunProvenance) -> None:
         self.folder = folder
@@ -70,7 +71,7 @@ class Run(FinishedRun):
 
     def __init__(self, folder: Path, source: ReportInput) -> None:
         super().__init__(folder, source.record, source.provenance)
-        self.held = source
+        self.inputs = source
         """All that its pages are made from."""
 
     @property
@@ -81,7 +82,7 @@ class Run(FinishedRun):
     @property
     def failed(self) -> int:
         """Number of trials in which the program raised an error; each voids its pair."""
-        return int(self.held.trials.failed.sum())
+        return int(self.inputs.trials.failed.sum())
 
     @property
     def broken(self) -> bool:
@@ -106,14 +107,14 @@ class Run(FinishedRun):
 
         Its `to_pandas` makes a DataFrame where pandas is installed.
         """
-        return read_table(encode_outcomes(self.held.trials))
+        return read_table(encode_outcomes(self.inputs.trials))
 
     def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
         """Write report.html and table.md, and return their paths.
 
         They go into `folder`, by default that of the run. `UserError` where it cannot be written.
         """
-        return write_report(self.held, self.folder if folder is None else Path(folder))
+        return write_report(self.inputs, self.folder if folder is None else Path(folder))
 
     def _repr_markdown_(self) -> str:
         return markdown_table(self.record)
@@ -122,6 +123,7 @@ class Run(FinishedRun):
 class MapRun(FinishedRun):
     """A finished reversal map: its result, and where its files are."""
 
+    files = MAP_MADE_FROM
     record: MapResult
     """Result of the map in numbers: `points`, `surface`, `flips`, `joint`."""
 
@@ -134,6 +136,7 @@ class MapRun(FinishedRun):
 class ScanRun(FinishedRun):
     """A finished scan: its result, and where its files are."""
 
+    files = SCAN_MADE_FROM
     record: ScanResult
     """Result of the scan in numbers: `errors`, `versions`, ..."""
 
@@ -153,26 +156,15 @@ def open_run(folder: str | PathLike[str]) -> "Run | MapRun | ScanRun | Any":
     """
     place = Path(folder)
     provenance = read_provenance(place)
-    if MAP in provenance.files:
-        return MapRun(place, _record(place, provenance, MAP_MADE_FROM, MapResult), provenance)
-    if SCAN in provenance.files:
-        return ScanRun(place, _record(place, provenance, SCAN_MADE_FROM, ScanResult), provenance)
-    if RECORD not in provenance.files:
+    for kind, model in ((MapRun, MapResult), (ScanRun, ScanResult)):
+        if kind.files[0] in provenance.files:
+            contents = unseal(place, provenance.files, kind.files)
+            record = parsed(contents[kind.files[0]], place / kind.files[0], model)
+            if provenance.library_hash != record.facts.library_hash:
+                raise UserError(f"the files of {place} do not belong together: {AGAIN}.")
+            return kind(place, record, provenance)
+    if Run.files[0] not in provenance.files:
         for point in entry_points(group="faultpath.runs"):
             if point.name in provenance.files:
                 return point.load()(place)
     return Run(place, read_run(place))
-
-
-_Record = TypeVar("_Record", MapResult, ScanResult)
-
-
-def _record(
-    folder: Path, provenance: RunProvenance, names: tuple[str, str], model: type[_Record]
-) -> _Record:
-    """Return the result of a map or scan, after comparing its files with their digests."""
-    contents = unseal(folder, provenance.files, names)
-    record = parsed(contents[names[0]], folder / names[0], model)
-    if provenance.library_hash != record.facts.library_hash:
-        raise UserError(f"the files of {folder} do not belong together: {AGAIN}.")
-    return record

@@ -1,7 +1,8 @@
 """A system from whatever names it: a name, a file, or the object itself."""
 
 import os
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
@@ -9,10 +10,9 @@ from typing import cast
 
 from faultpath import run
 from faultpath.core.errors import UserError
-from faultpath.core.text import extra
+from faultpath.core.text import extra, one_line
 from faultpath.run import SystemSpec
-from faultpath.run.registry import factory_name
-from faultpath.run.trust import PART
+from faultpath.run.registry import factory_name, installed_systems
 from faultpath.run.work.executor import Executor
 from faultpath.run.work.processes import local
 from faultpath.system.checks import check_system
@@ -25,6 +25,9 @@ LOCAL, RAY = "local", "ray"
 _BRING = "bring"
 """The option of a system that takes parts of the user's own, separated by commas; a system without
 it takes no parts."""
+
+_PART = re.compile(r"([^:]+:[A-Za-z_]\w*)(?:/|$)")
+"""A part of the user's own, in the name of a variant or in an option."""
 
 _LOADED = "_faultpath_loaded"
 """Under which name an object keeps what it was loaded from."""
@@ -145,7 +148,7 @@ def with_parts(spec: SystemSpec, variants: Sequence[str]) -> SystemSpec:
             )
         if "," in name:
             raise UserError(f"'{name}' has a comma in it: rename the file, commas part names.")
-        parts += PART.findall(name)
+        parts += _PART.findall(name)
     options = {**spec.options, _BRING: ",".join(dict.fromkeys(parts))}
     return SystemSpec(name=spec.name, options=options)
 
@@ -158,3 +161,29 @@ def _spec(system: object, options: Mapping[str, object]) -> SystemSpec:
         )
     name = os.fspath(cast("str | PathLike[str]", system))
     return SystemSpec(name=factory_name(name), options=as_text(options))
+
+
+def check_named(
+    file: str, spec: SystemSpec, variants: Sequence[str], named: Collection[str], trusted: bool
+) -> None:
+    """Raise `UserError` where building `spec`, which `file` describes, would import code that is
+    not installed and that the person has not `named` too, unless everything is `trusted`."""
+    again = {*named, *map(factory_name, named)}
+    unnamed = [one_line(name) for name in _names(spec, variants) if name not in again]
+    if unnamed and not trusted:
+        raise UserError(
+            f"{file} names {', '.join(unnamed)}, and importing that runs it: look at it first, "
+            "then name it too, with --code, or give --trust"
+        )
+
+
+def _names(spec: SystemSpec, variants: Sequence[str]) -> Iterator[str]:
+    """Yield what names code that is not installed: the system, then whatever may name a part.
+
+    How a system reads its options is its own affair, so each that could name code counts whole.
+    """
+    if spec.name not in installed_systems():
+        yield spec.name
+    pieces = [piece.strip() for value in spec.options.values() for piece in value.split(",")]
+    pieces += [name for variant in variants for name in _PART.findall(variant)]
+    yield from dict.fromkeys(piece for piece in pieces if ":" in piece or ".py" in piece)

@@ -15,8 +15,8 @@ def reversal_map(system: SystemName, as_json: Json = False, **arguments: Any) ->
     """Map the success difference over the error at one module and that at another: where repair
     or baseline is ahead, from which correlation of the errors on, and which error reverses that."""
     from faultpath.api.comparing import in_json
-    from faultpath.api.designs import map
     from faultpath.api.display import SafeConsole
+    from faultpath.api.rounds import map
 
     run = map(system, **arguments, progress=display(as_json))
     if as_json:
@@ -38,7 +38,7 @@ def scan(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     from faultpath.analyses.scan.sources import Ranking
     from faultpath.api.comparing import in_json
     from faultpath.api.display import SafeConsole
-    from faultpath.api.scanning import scan
+    from faultpath.api.rounds import scan
     from faultpath.report.scan import ranking_table, tables
     from faultpath.report.tables.terminal import Parted
     from faultpath.report.terminal import conclusion

@@ -13,7 +13,7 @@ from typer.models import OptionInfo
 
 from faultpath.cli.options import literal, path
 from faultpath.core.errors import UserError
-from faultpath.run.question import ADVANCED, Asked, Flag, flag
+from faultpath.run.question import ADVANCED, Flag, UserQuestion, flag
 
 if TYPE_CHECKING:
     from faultpath.system.options import Option
@@ -27,7 +27,7 @@ _DEST = "system_"
 """Before the names of the system's options, which may be those of the verb's own."""
 
 
-def takes(model: type[Asked], *without: str) -> Callable[[_Verb], _Verb]:
+def takes(model: type[UserQuestion], *without: str) -> Callable[[_Verb], _Verb]:
     """Give a verb the flags of a model.
 
     The verb has a last parameter `**arguments`, which gets what the line says, by the names of the
@@ -74,7 +74,7 @@ def _advanced(parameter: inspect.Parameter) -> bool:
     return any(getattr(note, "rich_help_panel", None) == ADVANCED for note in notes)
 
 
-def _parameter(model: type[Asked], name: str) -> inspect.Parameter:
+def _parameter(model: type[UserQuestion], name: str) -> inspect.Parameter:
     """Return the option of a field: its type, default, help and heading."""
     field = model.model_fields[name]
     notes = [note for note in field.metadata if isinstance(note, Flag)]
@@ -95,7 +95,7 @@ def _parameter(model: type[Asked], name: str) -> inspect.Parameter:
         default = False
     owners = (owner for owner in model.__mro__ if name in vars(owner).get("__annotations__", {}))
     panels = [note.panel for note in notes if note.panel]
-    panels += [owner.panel for owner in owners if issubclass(owner, Asked)]
+    panels += [owner.panel for owner in owners if issubclass(owner, UserQuestion)]
     text = field.description or ""
     option = typer.Option(
         flag(model, name),

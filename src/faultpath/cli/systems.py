@@ -37,14 +37,14 @@ def trace(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     """Print the information interface of a system and who read what, when.
 
     Exits with 1 where that differs from what is declared."""
-    from faultpath.api.checks import traced
     from faultpath.api.display import SafeConsole
     from faultpath.api.job import begin
     from faultpath.report.tables.terminal import STYLES, Parted
     from faultpath.report.terminal import interface_table, trace_table
+    from faultpath.run.check.tracing import trace_system
 
     question, chosen, _, _ = begin("api.trace", TraceQuestion, system, arguments, display())
-    trace = traced(question, chosen)
+    trace = trace_system(chosen.system, chosen.spec, question)
     if as_json:
         typer.echo(trace.model_dump_json(indent=2))
         return FOUND if trace.findings else 0

@@ -1,7 +1,7 @@
 """For a system that shows more of a recorded trial, or that records one for other trials."""
 
 from faultpath.run.attempt import Done, taps_of
-from faultpath.run.check.recording import Recording, Trial, Values, added, trials
+from faultpath.run.check.recording import RecordedTrial, Recording, Values, added, trials
 from faultpath.run.store.signals import Signal
 
-__all__ = ["Done", "Recording", "Signal", "Trial", "Values", "added", "taps_of", "trials"]
+__all__ = ["Done", "RecordedTrial", "Recording", "Signal", "Values", "added", "taps_of", "trials"]

@@ -22,8 +22,7 @@ from faultpath.report.sentences.phrases import (
 from faultpath.report.sentences.words import words
 from faultpath.report.tables import Line, Table, line
 from faultpath.report.tables.terminal import Parted, drawn
-from faultpath.run.check.reads import Read
-from faultpath.run.check.tracing import TraceReport
+from faultpath.run.check.tracing import TracedRead, TraceReport
 
 _EFFECTS = (*DIFFERENCE, "holm", "scenes", "void", "break-even")
 
@@ -114,7 +113,7 @@ def interface_table(interface: Interface) -> RenderableType:
 
 def trace_table(trace: TraceReport) -> Table:
     """Return a line for each reader of a channel, in the order in which they read."""
-    taps: dict[tuple[str, str], list[Read]] = {}
+    taps: dict[tuple[str, str], list[TracedRead]] = {}
     for read in trace.reads:
         taps.setdefault((read.reader, read.channel), []).append(read)
     columns = ["channel", "source", "at steps", "of steps", "made by"]

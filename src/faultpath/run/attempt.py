@@ -11,6 +11,7 @@ from faultpath.core.error_source import described, located
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.loop import DeliveryListener, TapCount, Taps
 from faultpath.run.plan import Treatment
+from faultpath.run.work.executor import Failed, Lost
 from faultpath.system.outcome import Outcome, checked
 from faultpath.system.system import System
 
@@ -35,21 +36,8 @@ class Raised:
     traceback: str
 
 
-@dataclass(frozen=True)
-class Wrong:
-    """The audit itself is wrong, whichever scene: no result of it would mean anything."""
-
-    error: Exception
-
-
-@dataclass(frozen=True)
-class Died:
-    """The worker process died, or was stopped."""
-
-    how: str
-
-
-Reply = Done | Raised | Wrong | Died
+Reply = Done | Raised | Failed | Lost
+"""`Failed`: the audit itself is wrong, whichever scene, and no result of it would mean anything."""
 
 
 def taps_of(
@@ -81,7 +69,7 @@ def attempt(
     scenes: Sequence[str],
     guard: bool = False,
     observer: DeliveryListener | None = None,
-) -> Done | Raised | Wrong:
+) -> Done | Raised | Failed:
     """Run a treatment over some scenes; an error comes back as a value.
 
     `guard` and `observer` are those of `Taps`.
@@ -107,7 +95,7 @@ def attempt(
         )
         return Done(noted, receipts.counts())
     except UserError as error:
-        return Wrong(located(error))
+        return Failed(located(error))
     except SystemExit as error:
         message = f"the system called sys.exit({error.code!r}): raise an error or return outcomes"
         return Raised(message, traceback.format_exc())

@@ -41,8 +41,13 @@ class Treatment(Frozen):
 
     def key(self) -> str:
         """Content hash: treatments that would run the same trials have the same key."""
+        # Sorted and in JSON, so that neither the order of fields nor the process decides the key.
         content = json.dumps(self.model_dump(mode="json"), sort_keys=True)
         return hashlib.sha256(content.encode()).hexdigest()[:16]
+
+    def describe(self) -> str:
+        """Return its faults in words."""
+        return " and ".join(fault.describe() for fault in self.faults) or "correct inputs"
 
 
 class Row(Frozen):

@@ -45,17 +45,17 @@ ADVANCED = "Advanced"
 Scenes = Annotated[str, Field(description="Library of scenes, by name or file.")]
 
 
-class Asked(Frozen, strict=True, allow_inf_nan=False):
+class UserQuestion(Frozen, strict=True, allow_inf_nan=False):
     """Question of a call."""
 
     panel: ClassVar[str] = ""
     """Heading in the help of the fields that a class declares."""
 
 
-_Asked = TypeVar("_Asked", bound=Asked)
+_Question = TypeVar("_Question", bound=UserQuestion)
 
 
-def ask(model: type[_Asked], fields: Mapping[str, object], command: bool = False) -> _Asked:
+def ask(model: type[_Question], fields: Mapping[str, object], command: bool = False) -> _Question:
     """Return what is asked; `UserError` for what does not fit, by its flag if `command`."""
     try:
         return model.model_validate(dict(fields))
@@ -66,7 +66,7 @@ def ask(model: type[_Asked], fields: Mapping[str, object], command: bool = False
         raise UserError(f"{where}: {wrong.says}.") from None
 
 
-def flag(model: type[Asked], name: str) -> str:
+def flag(model: type[UserQuestion], name: str) -> str:
     """Return what the command line calls a field: `margin_pp` is `--margin`."""
     field = model.model_fields[name]
     for note in field.metadata:
@@ -76,7 +76,7 @@ def flag(model: type[Asked], name: str) -> str:
     return f"--no-{dashed}" if field.default is True else f"--{dashed}"
 
 
-class Request(Asked):
+class Request(UserQuestion):
     """Question about a system."""
 
     library: Scenes = "selection"
@@ -143,7 +143,7 @@ class RepairQuestion(Request):
     seeds: Seeds = (0,)
 
 
-class Execution(Asked):
+class Execution(UserQuestion):
     """Where and how trials run."""
 
     panel: ClassVar[str] = "How it runs"

@@ -19,7 +19,6 @@ from importlib.machinery import (
 from importlib.metadata import entry_points
 from pathlib import Path
 from types import CodeType, ModuleType
-from typing import Any
 
 from faultpath.core.error_source import described, note_system, ours
 from faultpath.core.error_source import place as where
@@ -49,9 +48,9 @@ def installed_systems() -> dict[str, str]:
 def load_system(spec: SystemSpec) -> System:
     """Build the system that `spec` names.
 
-    The name is that of an entry point in the group `faultpath.system`, `module:attribute`, or
+    The name is that of an entry point in the group `faultpath.systems`, `module:attribute`, or
     `path/to/file.py:attribute`, the attribute being `create` where a file is named alone. The
-    attribute is called with the options, read as `trials.options` says, and returns a `System`.
+    attribute is called with the options, see `faultpath.system.options`, and returns a `System`.
     `UserError` for a name, attribute or option that does not exist, a missing package, or a
     module of the system's own of which this process would run another one of that name.
 
@@ -196,12 +195,6 @@ def _file_root(place: str) -> Root:
     return Root(f"faultpath_system_{path.stem}_{sha256(bytes(path)).hexdigest()[:8]}", path)
 
 
-def named(name: str) -> Any:
-    """Return what `module:attribute` names."""
-    place, _, attribute = name.partition(":")
-    return getattr(importlib.import_module(place), attribute)
-
-
 def factory_name(name: str) -> str:
     """Return the name of a system with its factory, `create` where a file is named alone."""
     return f"{name}:create" if name.endswith(".py") else name
@@ -252,9 +245,9 @@ def _check_own(start: Path | str, folder: Path) -> None:
         seen.add(name := waiting[0])
         files = (folder / name / "__init__.py", folder / f"{name}.py")
         own = next((file for file in files if file.is_file()), None)
-        if own is None or ours(name) or not (found := places(name)):
+        if own is None or ours(name) or not (origins := places(name)):
             continue
-        origin = found[0] / own.name if found[0].is_dir() else found[0]
+        origin = origins[0] / own.name if origins[0].is_dir() else origins[0]
         if os.path.realpath(own) != os.path.realpath(origin) and kind_of(origin) == "local":
             raise UserError(
                 f"{start} imports {name!r}, which is {origin} in this process and not its own "

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -24,13 +24,13 @@ from faultpath.loop import (
     UndeclaredReader,
 )
 from faultpath.run import Treatment
-from faultpath.run.attempt import Died, Done, Raised, Wrong, attempt
+from faultpath.run.attempt import Done, Raised, attempt
 from faultpath.run.check.reads import Enough, Read, ReadLog
 from faultpath.run.check.recording import Recording, signals
 from faultpath.run.execution.dispatch import Built, UndeclaredFile, dispatch
 from faultpath.run.pairing import unlike
 from faultpath.run.store.signals import DRAWN, Signal
-from faultpath.run.work.executor import Executor
+from faultpath.run.work.executor import Executor, Failed, Lost
 from faultpath.system.episodes import EpisodePlant
 from faultpath.system.loop_system import LoopSystem
 from faultpath.system.outcome import Outcome
@@ -44,6 +44,8 @@ MISTAKES: dict[str, tuple[type[Exception], ...]] = {
 }
 """Errors by the check that reports them; any other error keeps trials from their end."""
 TRIALS = "trials end"
+Delivery: TypeAlias = tuple[str, int, str, str]
+"""Scene, control step, channel and reader."""
 
 
 @dataclass(frozen=True)
@@ -78,25 +80,30 @@ class RecordedBlock:
     fails: str = ""
     """The check that reports the error."""
 
-    def readings(self, dt_s: float, what: str = "clean") -> dict[tuple[str, int, str, str], Any]:
-        """Return what is noted of each reading by scene, step, channel and reader, while it ran.
-
-        `what` is a field of `Read` by scene: a digest, or the sum.
-        """
-        if (dt_s, what) not in self._readings:
-            self._readings[dt_s, what] = self._by_reading(dt_s, what)
-        return self._readings[dt_s, what]
+    dt_s: float = 0.0
+    """Seconds of a control step."""
 
     @cached_property
-    def _readings(self) -> dict[tuple[float, str], dict[tuple[str, int, str, str], Any]]:
-        return {}
+    def clean(self) -> Mapping[Delivery, bytes]:
+        """Digest of what the source held, of each reading while its scene ran."""
+        return self._by_delivery("clean")
 
-    def _by_reading(self, dt_s: float, what: str) -> dict[tuple[str, int, str, str], Any]:
-        ends = {outcome.scene: outcome.steps(dt_s) for outcome in self.outcomes}
+    @cached_property
+    def got(self) -> Mapping[Delivery, bytes]:
+        """Digest of what the reader got."""
+        return self._by_delivery("got")
+
+    @cached_property
+    def sums(self) -> Mapping[Delivery, float]:
+        """Sum of the finite numbers that the source held."""
+        return self._by_delivery("sums")
+
+    def _by_delivery(self, what: str) -> dict[Delivery, Any]:
+        ends = {outcome.scene: outcome.steps(self.dt_s) for outcome in self.outcomes}
         return {
             (scene, read.step, *read.tap): noted
             for read in self.reads
-            for scene, noted in getattr(read, what).items()
+            for scene, noted in zip(read.scenes, getattr(read, what), strict=False)
             if read.step < ends.get(scene, read.step + 1)
         }
 
@@ -113,15 +120,17 @@ def run_blocks(
     """
     waiting = iter(blocks)
 
-    def handle(block: BlockSpec, reply: RecordedBlock | Died | Wrong) -> None:
-        if isinstance(reply, Wrong) and isinstance(reply.error, UndeclaredFile):
-            reply = RecordedBlock(error=str(reply.error), fails="data files")
-        elif isinstance(reply, Wrong):
-            if isinstance(reply.error, UserError):
-                raise reply.error
-            reply = RecordedBlock(error=described(reply.error), fails=TRIALS)
-        elif isinstance(reply, Died):
+    def handle(block: BlockSpec, reply: RecordedBlock | Lost | Failed) -> None:
+        if isinstance(reply, Lost):
             reply = RecordedBlock(error=reply.how, fails=TRIALS)
+        elif isinstance(reply, Failed):
+            error = reply.error
+            if isinstance(error, UndeclaredFile):
+                reply = RecordedBlock(error=str(error), fails="data files")
+            elif isinstance(error, UserError):
+                raise error
+            else:
+                reply = RecordedBlock(error=described(error), fails=TRIALS)
         handle_reply(block, reply)
 
     dispatch(executor, built, run_block, lambda _: next(waiting, None), handle)
@@ -163,19 +172,20 @@ def run_block(system: System, block: BlockSpec) -> RecordedBlock:
                     break
             if kind == NotFinite.__name__:
                 error, fails = text, "shape and unit"
-        elif isinstance(result, Wrong):
+        elif isinstance(result, Failed):
             error = str(result.error)
             failing = (name for name, kinds in MISTAKES.items() if isinstance(result.error, kinds))
             fails = next(failing, TRIALS)
         if error:
             break
     return RecordedBlock(
-        () if error else tuple(outcomes),
-        tuple(counts),
-        tuple(reads),
-        tuple(signals_by_scene),
-        error,
-        fails,
+        outcomes=() if error else tuple(outcomes),
+        counts=tuple(counts),
+        reads=tuple(reads),
+        signals=tuple(signals_by_scene),
+        error=error,
+        fails=fails,
+        dt_s=system.control_dt_s,
     )
 
 
@@ -185,7 +195,7 @@ def coarsest(run: RecordedBlock) -> float:
     return max((float(np.finfo(k).eps) for k in kinds if k.startswith("float")), default=0.0)
 
 
-def gap_of(first: RecordedBlock, again: RecordedBlock, dt_s: float) -> float:
+def gap_of(first: RecordedBlock, again: RecordedBlock) -> float:
     """Return by how much of their size metrics and sums of readings differ at most; infinity for
     other ends. Nothing that ran differs from nothing."""
     by_scene = {outcome.scene: outcome for outcome in first.outcomes}
@@ -195,8 +205,10 @@ def gap_of(first: RecordedBlock, again: RecordedBlock, dt_s: float) -> float:
             return math.inf
 
     def numbers(run: RecordedBlock) -> dict[tuple[Any, ...], float]:
-        read = run.readings(dt_s, "sums")
-        sums = {((channel, at), scene, step): v for (scene, step, channel, at), v in read.items()}
+        sums = {
+            ((channel, at), scene, step): value
+            for (scene, step, channel, at), value in run.sums.items()
+        }
         metrics = ((outcome.scene, outcome.metrics.items()) for outcome in run.outcomes)
         return sums | {(name, scene): v or 0.0 for scene, named in metrics for name, v in named}
 

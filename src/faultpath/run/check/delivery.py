@@ -34,17 +34,15 @@ def reader_at(
 
 def unanswered(seen: Seen) -> Iterator[tuple[str, tuple[str, str]]]:
     """Yield each variant and tap where a fault altered readings and nothing else."""
-    dt_s = seen.system.control_dt_s
     for (variant, why, tap), run in seen.runs.items():
         if why != "tap" or run.error or not any(r.altered for r in run.reads if r.tap == tap):
             continue
         first = seen.of(variant, "first")
-        clean = first.readings(dt_s)
         ends = tuple(
             replace(outcome, faulted_steps=0, altered_steps=0, trajectory_hash="")
             for outcome in run.outcomes
         )
-        alike = all(clean.get(key, value) == value for key, value in run.readings(dt_s).items())
+        alike = all(first.clean.get(key, value) == value for key, value in run.clean.items())
         if alike and not (ends and deviation(first.outcomes, Done(ends, ()))):
             yield variant, tap
 
@@ -108,8 +106,8 @@ def _effect(seen: Seen, variant: str, tap: tuple[str, str]) -> tuple[bool, str]:
     module = module_of(tap[1])
     runs = [seen.of(variant, why, min(taps)) for why in (HELD, MOVED)]
     queried = {read.source for read in reads if read.asks}  # an answer depends on the request too
-    handed = {scene: step for step, scene, at in _unlike(seen, runs, "got")[::-1] if at in taps}
-    for step, scene, at in _unlike(seen, runs, "clean"):
+    handed = {scene: step for step, scene, at in _unlike(runs, "got")[::-1] if at in taps}
+    for step, scene, at in _unlike(runs, "clean"):
         if sources[at] in output - queried and step < handed.get(scene, math.inf):
             return True, (
                 f"had no effect, and '{module}' wrote another {sources[at]} at step {step} in "
@@ -123,13 +121,10 @@ def _effect(seen: Seen, variant: str, tap: tuple[str, str]) -> tuple[bool, str]:
     )
 
 
-def _unlike(
-    seen: Seen, runs: Sequence[RecordedBlock], what: str
-) -> list[tuple[int, str, tuple[str, str]]]:
+def _unlike(runs: Sequence[RecordedBlock], what: str) -> list[tuple[int, str, tuple[str, str]]]:
     """Return step, scene and tap of what differs in two runs, as long as all their scenes ran."""
-    dt_s = seen.system.control_dt_s
-    ends = (outcome.steps(dt_s) for run in runs for outcome in run.outcomes)
+    ends = (outcome.steps(run.dt_s) for run in runs for outcome in run.outcomes)
     last = min(ends, default=0) if all(run.outcomes for run in runs) else 0
-    one, two = (run.readings(dt_s, what) for run in runs)
+    one, two = (getattr(run, what) for run in runs)
     keys = (key for key in one.keys() & two.keys() if one[key] != two[key] and key[1] < last)
     return sorted((step, scene, (channel, reader)) for scene, step, channel, reader in keys)

@@ -55,6 +55,7 @@ def judged(seen: Seen) -> tuple[Check, ...]:
         none = Check(name=name, says="no variant ran to its end", judged=False)
         checks.append(judge(name, seen) if count else none)
     for at, check in enumerate(checks):
+        # Backwards: of several runs with the same error the first one names it.
         stopped = {
             run.error: f"'{variant}'{f', {why}' if why.startswith(UNDER) else ''}"
             for (variant, why, _), run in reversed(seen.runs.items())
@@ -111,12 +112,11 @@ def _independence(name: str, seen: Seen) -> Check:
     if len(seen.scenes) < 2:
         return Check(name=name, says="one scene has no others beside it", judged=False)
     failures, remarks, open_ended = list[str](), list[str](), False
-    dt_s = seen.system.control_dt_s
     for variant, first in seen.firsts():
         if not (differs := seen.differs(variant, "part")):
             continue
         lead = f"Variant '{variant}' run in another order, without some of the scenes beside it,"
-        gap, rounding = (gap_of(first, seen.of(variant, why), dt_s) for why in ("part", "rounded"))
+        gap, rounding = (gap_of(first, seen.of(variant, why)) for why in ("part", "rounded"))
         if gap > _SEVERAL * max(rounding, coarsest(first)):
             failures.append(
                 f"{lead} {differs}; let nothing that scenes of one call of run() share decide a "

@@ -8,6 +8,7 @@ a fault changed it, by how much, and when a fault was in force.
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pkgutil import resolve_name
 from typing import Any, TypeAlias, cast
 
 import numpy as np
@@ -20,7 +21,6 @@ from faultpath.core.errors import SystemMistake
 from faultpath.interface import Provenance
 from faultpath.loop import DeliveryListener, Query, Reading, Tap
 from faultpath.run.attempt import Done
-from faultpath.run.registry import named
 from faultpath.run.store.signals import IN_FORCE, TOGETHER, Signal
 from faultpath.system.composed import ComposedSystem
 from faultpath.system.system import System, TrialReadings
@@ -94,7 +94,7 @@ def _numbers(value: Any) -> Values | None:
 
 
 @dataclass(frozen=True)
-class Trial(TrialReadings):
+class RecordedTrial(TrialReadings):
     """One scene of a recording, while its trial ran."""
 
     recording: Recording
@@ -118,10 +118,10 @@ class Trial(TrialReadings):
         return values
 
 
-def trials(recording: Recording, done: Done, dt_s: float) -> list[Trial]:
+def trials(recording: Recording, done: Done, dt_s: float) -> list[RecordedTrial]:
     """Return each trial of a recorded run."""
     steps = (outcome.steps(dt_s) for outcome in done.outcomes)
-    return [Trial(recording, scene, count) for scene, count in enumerate(steps)]
+    return [RecordedTrial(recording, scene, count) for scene, count in enumerate(steps)]
 
 
 def signals(system: System, recording: Recording, done: Done) -> list[tuple[Signal, ...]]:
@@ -162,7 +162,7 @@ def signals(system: System, recording: Recording, done: Done) -> list[tuple[Sign
         series.append((IN_FORCE, IN_FORCE, "1", (), force))
     every = trials(recording, done, system.control_dt_s)
     if system.more_signals:
-        more: list[tuple[Signal, ...]] = named(system.more_signals)(system, recording, done)
+        more: list[tuple[Signal, ...]] = resolve_name(system.more_signals)(system, recording, done)
     else:
         more = [_error_signals(system, trial) for trial in every]
     return [
@@ -182,7 +182,7 @@ def signals(system: System, recording: Recording, done: Done) -> list[tuple[Sign
     ]
 
 
-def _error_signals(system: System, trial: Trial) -> tuple[Signal, ...]:
+def _error_signals(system: System, trial: RecordedTrial) -> tuple[Signal, ...]:
     errors = system.errors
     if errors is None:
         return ()

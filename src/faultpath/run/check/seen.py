@@ -78,9 +78,7 @@ class Seen:
             return f"fails where the first did not ({error})"
         if not again.outcomes:
             return ""
-        dt_s = self.system.control_dt_s
-        then = first.readings(dt_s)
-        odd = [key for key, digest in again.readings(dt_s).items() if then.get(key) != digest]
+        odd = [key for key, digest in again.clean.items() if first.clean.get(key) != digest]
         by_scene = {outcome.scene: outcome for outcome in first.outcomes}
         before = [by_scene[outcome.scene] for outcome in again.outcomes]
         words = str(deviation(before, Done(again.outcomes, ())) or "")

@@ -18,6 +18,21 @@ from faultpath.system.loop_system import LoopSystem
 from faultpath.system.system import System
 
 
+class TracedRead(Result):
+    """A delivery of one channel to one reader in one control step."""
+
+    step: int
+    reader: str
+    channel: str
+    source: str
+    valid_step: int
+    """Step of the reading, as that of `Read`."""
+    asks: int = 0
+    """Answers that the reader got of a query."""
+    altered_by: tuple[str, ...] = ()
+    """Faults at the tap, where what was delivered differs from the reading."""
+
+
 class TraceReport(Result):
     """A trace of a variant; what `faultpath trace --json` prints."""
 
@@ -30,7 +45,7 @@ class TraceReport(Result):
     seed: int
     steps: int
     fault: str = ""
-    reads: tuple[Read, ...]
+    reads: tuple[TracedRead, ...]
     """In the order in which they happened."""
     reconstructed: dict[str, tuple[str, tuple[str, ...]]]
     """Source to the module that reconstructs it and the channels that this one read."""
@@ -83,7 +98,15 @@ def trace_system(system: System, spec: SystemSpec, question: TraceQuestion) -> T
         steps=steps,
         fault=describe(faults),
         reads=tuple(
-            read.model_copy(update={"altered_by": (words[read.tap],)}) if read.altered else read
+            TracedRead(
+                step=read.step,
+                reader=read.reader,
+                channel=read.channel,
+                source=read.source,
+                valid_step=read.valid_step,
+                asks=read.asks,
+                altered_by=(words[read.tap],) if read.altered else (),
+            )
             for read in run.reads
         ),
         reconstructed=_reconstructed(system, run.reads),

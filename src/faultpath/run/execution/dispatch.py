@@ -11,12 +11,19 @@ from typing import Any, Generic, TypeVar
 
 from faultpath.core.error_source import explained
 from faultpath.core.errors import SystemMistake, UserError
-from faultpath.run.attempt import Died, Wrong
 from faultpath.run.code import Code, CodeState, Watch, named, source_state, system_code
 from faultpath.run.opened import reads
 from faultpath.run.plan import SystemSpec
 from faultpath.run.registry import load_system, opened_by
-from faultpath.run.work.executor import Executor, Failed, Lost, WorkerLost, elsewhere, send_message
+from faultpath.run.work.executor import (
+    Executor,
+    Failed,
+    Lost,
+    Returned,
+    WorkerLost,
+    elsewhere,
+    send_message,
+)
 from faultpath.system.checks import library_of
 from faultpath.system.declared import Library
 from faultpath.system.system import System
@@ -135,14 +142,14 @@ def dispatch(
     """Run what `take` returns for a worker, until it returns nothing and all is settled.
 
     `work`, a function of a module, gets the system and the task. `handle_reply` gets what it
-    returned, `Wrong` for an error that it raised, or `Died` where a worker was lost over the task
+    returned, `Failed` with an error that it raised, or `Lost` where a worker was lost over the task
     twice or stopped at the time limit: as asked, as the system says, or an hour.
     """
     if limit_s is not None and not (math.isfinite(limit_s) and limit_s > 0):
         raise UserError(f"the time limit is {limit_s:g} s: give a number of seconds above 0")
     limit_s = limit_s or built.system.time_limit_s or LONGEST_S
     call = partial(built.work, work)
-    if not executor.in_process:
+    if executor.count:
         call = partial(_elsewhere, built.job, work)
     running: dict[int, _Running[T]] = {}
     again: list[tuple[T, bool]] = []
@@ -159,26 +166,24 @@ def dispatch(
         for worker, end in executor.completions(_TICK_S):
             ended = running.pop(worker)
             false_starts = 0 if ended.started else false_starts
-            if isinstance(end, Failed):
-                handle_reply(ended.task, Wrong(end.error))
-            elif not isinstance(end, Lost):
+            if isinstance(end, Returned):
                 handle_reply(ended.task, end.value)
-            elif not ended.started:
+            elif isinstance(end, Failed) or (ended.started and ended.tried):
+                handle_reply(ended.task, end)
+            elif ended.started:
+                again.append((ended.task, True))
+            else:
                 false_starts += 1
                 if false_starts > _FALSE_STARTS:
                     raise WorkerLost(f"worker processes failed to start: {end.how}")
                 again.append((ended.task, ended.tried))
-            elif not ended.tried:
-                again.append((ended.task, True))
-            else:
-                handle_reply(ended.task, Died(end.how))
+        # After the completions, so that a task that has just ended was in time.
         for worker, attempt in tuple(running.items()):
             if attempt.overran(limit_s, built.job.system.name):
                 executor.cancel(worker)
                 del running[worker]
-                handle_reply(
-                    attempt.task, Died(f"it was stopped at the time limit of {limit_s:g} s")
-                )
+                stopped = Lost(f"it was stopped at the time limit of {limit_s:g} s")
+                handle_reply(attempt.task, stopped)
         report()
 
 
@@ -192,7 +197,7 @@ def _elsewhere(job: BuildSpec, work: Callable[[System, Any], Any], task: Any) ->
     Raises where the system cannot be built or is another one here.
     """
     if not _built or _built[0].job != job:
-        _built.clear()
+        _built.clear()  # before: two systems may not fit into memory, and a failed one leaves none
         try:
             _built.append(_build(job))
         except (Exception, SystemExit) as error:

@@ -1,30 +1,36 @@
 """Run a little twice, to find results that do not repeat or that depend on their block.
 
-A few scenes of a unit drawn at random run again without the others, and one scene of another by
-itself, with guarded readings.
+At the end of a run a few scenes of a unit drawn at random run again without the others, and one
+scene of another by itself, with guarded readings. Of a finished run that other code made, whole
+blocks run again, to see whether the code that is here repeats it.
 """
 
 import hashlib
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
 
+from faultpath.core.errors import UserError
+from faultpath.core.files.atomic import write_text
 from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.plain import Misread, model_of
 from faultpath.core.results import Frozen
 from faultpath.loop import WrittenTo
-from faultpath.run.attempt import Died, Done, Reply, Wrong
+from faultpath.run.attempt import Done, Reply
 from faultpath.run.execution.schedule import Task, Unit
 from faultpath.run.findings import Deviation, Recheck
 from faultpath.run.store.folder import RunFolder
+from faultpath.run.work.executor import Failed, Lost
 from faultpath.system.outcome import Outcome
 
 SAMPLE = 4
 """Scenes of a unit that run again."""
+_OF_EACH = 4
+"""Blocks of each variant that are repeated, under different conditions."""
 _TRAJECTORY = "trajectory_hash"
 
 
@@ -34,7 +40,7 @@ def deviation(first: Sequence[Outcome], reply: Reply) -> Deviation | None:
     Trajectories count where both runs have a hash of them.
     """
     scenes, of = tuple(outcome.scene for outcome in first), len(first)
-    if isinstance(reply, Died):
+    if isinstance(reply, Lost):
         return Deviation(died=reply.how, scenes=scenes, of=of)
     if not isinstance(reply, Done):
         return Deviation(raised=str(reply.error), scenes=scenes, of=of)
@@ -145,13 +151,13 @@ class Rechecks:
             for scene in task.scenes
         ]
         wrote = ""
-        if isinstance(reply, Wrong) and isinstance(reply.error, WrittenTo):
+        if isinstance(reply, Failed) and isinstance(reply.error, WrittenTo):
             wrote = str(reply.error)
         self._kept[task.unit.key, task.recheck, task.scenes] = Recheck(
             why=task.recheck,
             unit=task.unit.key,
             variant=treatment.variant,
-            faults=" and ".join(fault.describe() for fault in treatment.faults) or "correct inputs",
+            faults=treatment.describe(),
             seed=treatment.seed,
             scenes=task.scenes,
             unit_scenes=len(task.unit.scenes),
@@ -159,7 +165,8 @@ class Rechecks:
             deviation=None if wrote else deviation(first, reply),
         )
         kept = _Kept(rechecks=tuple(recheck for _, recheck in sorted(self._kept.items())))
-        self._folder.save_rechecks(f"{kept.model_dump_json(indent=1)}\n")
+        text = kept.model_dump_json(indent=1) + "\n"
+        write_text(self._folder.rechecks, text, self._folder.path)
 
     def of_this_run(self) -> tuple[Recheck, ...]:
         """Return what ran again of the units of this run."""
@@ -169,6 +176,53 @@ class Rechecks:
     def findings(self) -> tuple[Recheck, ...]:
         """Return those of this run's units in which something was found."""
         return tuple(shown for shown in self.of_this_run() if shown.wrote or shown.deviation)
+
+
+def repeat(
+    blocks: Mapping[str, Done],
+    units: Sequence[Unit],
+    folder: RunFolder,
+    work: Callable[[Callable[[int], Task | None], Callable[[Task, Reply], None]], None],
+    changed: str,
+) -> str:
+    """Run a sample of the blocks of a finished run again and say how many trials they hold.
+
+    The sample is always the same of the same run; `changed` is what changed since. `UserError`
+    with the first block that differs.
+    """
+    tasks = [Task(unit, unit.scenes, recheck="sample") for unit in _sample(units)]
+    waiting = iter(tasks)
+
+    def handle_reply(task: Task, reply: Reply) -> None:
+        if isinstance(reply, Failed):
+            raise reply.error
+        treatment = task.unit.treatment
+        if differs := deviation(blocks[task.unit.key].outcomes, reply):
+            where = f"{treatment.describe()}, seed {treatment.seed}, {len(task.scenes)} scenes "
+            where += f"from {task.scenes[0]!r}"
+            raise UserError(
+                f"{folder.path} holds a finished run, and what is here does not repeat it (changed "
+                f"since: {changed}): a block of {treatment.variant!r} ({where}) {differs}. "
+                "Nothing in the folder was changed: choose a new one."
+            )
+
+    work(lambda worker: next(waiting, None), handle_reply)
+    count = sum(len(task.scenes) for task in tasks)
+    return (
+        f"{folder.path} was finished before {changed} changed. {count} of its trials ran again and "
+        "are equal to the bit, so the run counts as it is."
+    )
+
+
+def _sample(units: Sequence[Unit]) -> list[Unit]:
+    """Return a few units of each variant, under as many conditions as that gives."""
+    sample: list[Unit] = []
+    by_lot = sorted(units, key=lambda unit: _hash_order(unit.key))
+    for variant in sorted({unit.treatment.variant for unit in units}):
+        of_variant = (unit for unit in by_lot if unit.treatment.variant == variant)
+        conditions = {repr(unit.treatment.faults): unit for unit in of_variant}
+        sample += list(conditions.values())[:_OF_EACH]
+    return sample
 
 
 def _hash_order(*parts: str) -> str:

@@ -1,7 +1,7 @@
 """Run a plan into a folder, from wherever an earlier invocation left it."""
 
 import logging
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
@@ -9,23 +9,21 @@ from pathlib import Path
 
 from faultpath.core.errors import Stopped, UserError
 from faultpath.core.version import __version__
-from faultpath.run.attempt import Reply, Wrong, attempt
+from faultpath.run.attempt import Reply, attempt
 from faultpath.run.code import Code, named
 from faultpath.run.deliveries import Deliveries
 from faultpath.run.execution.dispatch import Built, dispatch
-from faultpath.run.execution.recheck import Rechecks
-from faultpath.run.execution.repeating import repeat
+from faultpath.run.execution.recheck import Rechecks, repeat
 from faultpath.run.execution.schedule import Task, TaskQueue, Unit, units_of
 from faultpath.run.execution.state import RunState, Stop
 from faultpath.run.findings import Finding, Recheck
-from faultpath.run.plan import Plan, Treatment, check_rows, selected
+from faultpath.run.plan import Plan, Treatment, check_rows
 from faultpath.run.registry import load_system
 from faultpath.run.store.folder import RunFolder
 from faultpath.run.store.manifest import Manifest
 from faultpath.run.trials import Trials
-from faultpath.run.work.executor import Executor, Progress
+from faultpath.run.work.executor import Executor, Failed, Progress
 from faultpath.run.work.processes import local
-from faultpath.system.declared import SceneRef
 from faultpath.system.system import System
 
 _log = logging.getLogger("faultpath")
@@ -92,8 +90,7 @@ def run_plan(
             the folder.
         system: Saves building it here when the caller has.
         shared: Lets plans with other treatments use the folder one after the other: a treatment
-        that one of
-            them ran is there for the next; the folder's tables are those of the last.
+            that one of them ran is there for the next; the folder's tables are those of the last.
         executor: Runs trials in place of `workers` processes, and keeps its own for the next plan.
         time_limit_s: Seconds that a worker may take over one block, or one scene of a block that
             failed, before it is stopped; by default what the system says, or an hour.
@@ -124,9 +121,11 @@ def run_plan(
     try:
         with manager as workforce:
             work = partial(dispatch, workforce, built, _attempted, limit_s=time_limit_s)
-            of_it = _units(plan, built, earlier) if earlier else ()
-            if earlier and (blocks := run.finished((unit.key, unit.scenes) for unit in of_it)):
-                manifest, units = earlier, of_it
+            # A finished run of other code counts as it is once a sample of it repeats: else a
+            # changed message would have all of its trials run again.
+            theirs = _units(plan, built, earlier) if earlier else ()
+            if earlier and (blocks := run.finished((unit.key, unit.scenes) for unit in theirs)):
+                manifest, units = earlier, theirs
                 changed = named(earlier.code.changed(code.state)) or "faultpath"
                 notice(repeat(blocks, units, run, work, changed))
             state = RunState(plan, library, units, run, stop)
@@ -172,19 +171,10 @@ def _units(plan: Plan, built: Built, manifest: Manifest) -> tuple[Unit, ...]:
     `UserError` for scenes or rows that cannot be run.
     """
     library, system = built.library, built.system
-    scenes: Sequence[SceneRef] = selected(plan, library)
-    if plan.scenes_per_analysis:
-        scenes = sorted(scenes, key=lambda scene: plan.scenes.index(scene.id))
-    check_rows(plan.rows, system.variants)
     fingerprint = f"{manifest.faultpath_version} {manifest.code.digest}"
-    size = system.scenes_a_block(len(library.scenes))
-    units: list[Unit] = []
-    for part, treatments in plan.parts().items():
-        chosen = [scene for scene in scenes if scene.id in part] if part else scenes
-        units += units_of(
-            treatments, chosen, size, library, fingerprint, plan.scenes_per_analysis, part
-        )
-    return tuple(units)
+    units = units_of(plan, library, system.scenes_a_block(len(library.scenes)), fingerprint)
+    check_rows(plan.rows, system.variants)
+    return units
 
 
 def _failures(state: RunState, folder: RunFolder) -> Iterator[Failure]:
@@ -199,6 +189,6 @@ def _failures(state: RunState, folder: RunFolder) -> Iterator[Failure]:
 
 def _attempted(system: System, task: Task) -> Reply:
     reply = attempt(system, task.unit.treatment, task.scenes, task.recheck == "guarded")
-    if isinstance(reply, Wrong):
+    if isinstance(reply, Failed):
         raise reply.error  # not every error survives being sent as a value
     return reply

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from faultpath.run.plan import Treatment
+from faultpath.run.plan import Plan, Treatment, selected
 from faultpath.system.declared import Library, SceneRef
 
 
@@ -26,39 +26,37 @@ class Unit:
     """Scenes that its rows name; empty where they name none."""
 
 
-def units_of(
-    treatments: Sequence[Treatment],
-    scenes: Sequence[SceneRef],
-    block_size: int,
-    library: Library,
-    fingerprint: str,
-    scenes_per_analysis: int = 0,
-    part: tuple[str, ...] = (),
-) -> tuple[Unit, ...]:
-    """Return every unit: block by block, in each the treatments in order.
+def units_of(plan: Plan, library: Library, block_size: int, fingerprint: str) -> tuple[Unit, ...]:
+    """Return every unit of a plan: block by block, in each the treatments in order.
 
     A block is a place in the library, not a count of selected scenes, so a selection and the whole
-    library share the blocks that both hold in full. With `scenes_per_analysis`, blocks are
-    so many scenes in the order given.
+    library share the blocks that both hold in full. Those of a sequential plan are its analyses.
     """
-    parts: dict[int, list[str]] = {}
-    for place, scene in enumerate(scenes):
-        block = place // scenes_per_analysis if scenes_per_analysis else scene.index // block_size
-        parts.setdefault(block, []).append(scene.id)
+    scenes: Sequence[SceneRef] = selected(plan, library)
+    per_analysis = plan.scenes_per_analysis
+    if per_analysis:  # in the order of the plan, not of the library
+        places = {scene: place for place, scene in enumerate(plan.scenes)}
+        scenes = sorted(scenes, key=lambda scene: places[scene.id])
     units: list[Unit] = []
-    dumped = [
-        (treatment, treatment.key(), treatment.model_dump(mode="json")) for treatment in treatments
-    ]
-    for block, ids in parts.items():
-        for treatment, treatment_key, treatment_content in dumped:
-            content = {
-                "system": fingerprint,
-                "treatment": treatment_content,
-                "scenes": ids,
-                "library": library.content_hash,
-            }
-            key = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:32]
-            units.append(Unit(key, treatment, treatment_key, block, tuple(ids), part))
+    for part, treatments in plan.parts().items():
+        blocks: dict[int, list[str]] = {}
+        chosen = [scene for scene in scenes if scene.id in part] if part else scenes
+        for place, scene in enumerate(chosen):
+            block = place // per_analysis if per_analysis else scene.index // block_size
+            blocks.setdefault(block, []).append(scene.id)
+        dumped = [(t, t.key(), t.model_dump(mode="json")) for t in treatments]
+        for block, ids in blocks.items():
+            for treatment, treatment_key, treatment_content in dumped:
+                # The names here are part of the keys of stored trials: with another name all of
+                # them would be run again.
+                content = {
+                    "system": fingerprint,
+                    "treatment": treatment_content,
+                    "scenes": ids,
+                    "library": library.content_hash,
+                }
+                key = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:32]
+                units.append(Unit(key, treatment, treatment_key, block, tuple(ids), part))
     return tuple(units)
 
 

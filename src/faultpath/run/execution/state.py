@@ -8,14 +8,14 @@ from dataclasses import dataclass, field, replace
 from faultpath.core.errors import UserError
 from faultpath.core.text import one_line
 from faultpath.loop import TapCount, added
-from faultpath.run.attempt import Died, Done, Raised, Reply, Wrong
+from faultpath.run.attempt import Done, Raised, Reply
 from faultpath.run.deliveries import TreatmentPart
 from faultpath.run.execution.schedule import Task, Unit
 from faultpath.run.findings import RaisedTogether
 from faultpath.run.plan import Plan, selected
 from faultpath.run.store.folder import RunFolder
 from faultpath.run.trials import Trial, Trials
-from faultpath.run.work.executor import Progress
+from faultpath.run.work.executor import Failed, Lost, Progress
 from faultpath.system.declared import Library
 from faultpath.system.outcome import Outcome, failed_outcome
 
@@ -104,25 +104,25 @@ class RunState:
         """Take in a reply and return the tasks that follow from it.
 
         A block whose program raised an error, or that its worker did not outlive, is run again
-        scene by scene, so that only the scenes at fault are lost. `Wrong` raises its error: nothing
-        that follows would mean anything. `NothingRuns` after a few failures and no trial beside.
+        scene by scene, so that only the scenes at fault are lost. Raises the error of `Failed`,
+        and `NothingRuns` after a few failed trials and no other.
         """
         unit, taps = task.unit, tuple[TapCount, ...]()
         match reply:
             case Done():
                 outcomes, taps = reply.outcomes, reply.taps
                 details = {o.scene: o.error or "" for o in outcomes if o.failed}
-            case Died() | Raised() if task.scenes[1:]:
+            case Lost() | Raised() if task.scenes[1:]:
                 if isinstance(reply, Raised):
                     whole = f"{_WHOLE}{one_line(reply.error)}\n{reply.traceback}\n"
                     self._partial.setdefault(unit.key, _Partial()).tracebacks.append(whole)
                 return tuple(replace(task, scenes=(scene,)) for scene in task.scenes)
-            case Died() | Raised():
+            case Lost() | Raised():
                 scene = task.scenes[0]
                 error = reply.error if isinstance(reply, Raised) else reply.how
                 outcomes = (failed_outcome(scene, error),)
                 details = {scene: reply.traceback if isinstance(reply, Raised) else error}
-            case Wrong():
+            case Failed():
                 raise reply.error
         partial = self._partial.setdefault(unit.key, _Partial())
         for scene, detail in details.items():
@@ -156,7 +156,11 @@ class RunState:
         """Return what is wrong with the system though its trials ended: it takes one scene
         alone."""
         units = self.units
-        sound = [unit for unit in units if not any(o.failed for o in self._outcomes_of(unit))]
+        sound = [
+            unit
+            for unit in units
+            if not any(self.outcomes[unit.treatment_key, scene].failed for scene in unit.scenes)
+        ]
         errors = [
             text.partition("\n")[0].removeprefix(_WHOLE)
             for text in (self._folder.load_failure(unit.key) for unit in sound)
@@ -165,9 +169,6 @@ class RunState:
         if not errors:
             return ()
         return (RaisedTogether(blocks=len(errors), of=len(units), error=errors[0]),)
-
-    def _outcomes_of(self, unit: Unit) -> list[Outcome]:
-        return [self.outcomes[unit.treatment_key, scene] for scene in unit.scenes]
 
     def _enter(self, unit: Unit, shard: Done) -> None:
         self.outcomes.update(

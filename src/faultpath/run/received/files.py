@@ -23,7 +23,7 @@ from faultpath.core.text import listed, unknown
 from faultpath.core.validation_messages import misfit_of
 from faultpath.run.received import inspect_logs, lerobot
 from faultpath.run.received.question import JudgeQuestion
-from faultpath.run.received.trial import Given, Received, received
+from faultpath.run.received.trial import Received, ResultsFile, received
 
 _READ = ("eval_info.json", "samples_*.jsonl", "*.eval", "????-??-??T*.json")
 """Patterns of files read from a folder and those in it; the last are Inspect's logs in JSON."""
@@ -66,18 +66,18 @@ def read_results(
     return trials, digests
 
 
-def _files(result: str) -> list[Given]:
+def _files(result: str) -> list[ResultsFile]:
     label, equals, rest = result.partition("=")
     if not equals or Path(result).exists():
         label, rest = "", result
     variant, _, condition = label.partition("@")
     place = Path(rest)
     if not place.is_dir():
-        return [Given(rest, variant, condition)]
+        return [ResultsFile(rest, variant, condition)]
     inside = sorted({file for pattern in _READ for file in place.rglob(pattern)})
     if not inside:
         raise UserError(f"{place} holds none of {', '.join(_READ)}: name the files themselves.")
-    return [Given(str(file), variant, condition) for file in inside]
+    return [ResultsFile(str(file), variant, condition) for file in inside]
 
 
 def _cells(path: Path, data: bytes, question: JudgeQuestion, label: str) -> Cells:

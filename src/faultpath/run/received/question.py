@@ -6,7 +6,7 @@ from typing import Annotated, ClassVar, Literal, Required, cast
 from pydantic import BeforeValidator, Field
 from typing_extensions import TypedDict
 
-from faultpath.run.question import GENERALISE, Asked, Flag, Generalise
+from faultpath.run.question import GENERALISE, Flag, Generalise, UserQuestion
 from faultpath.run.texts import Place, several
 
 Name = str | float
@@ -71,7 +71,7 @@ def _metrics(flags: object) -> object:
     return metrics
 
 
-class JudgeQuestion(Asked):
+class JudgeQuestion(UserQuestion):
     """Question about results that other tools wrote."""
 
     panel: ClassVar[str] = "What is compared"

@@ -39,7 +39,7 @@ class Received:
 
 
 @dataclass(frozen=True)
-class Given:
+class ResultsFile:
     """A file with what the command line says of all its trials."""
 
     path: str
@@ -59,7 +59,7 @@ class Given:
 
 
 def received(
-    where: str, cells: Mapping[str, Any], file: Given, question: JudgeQuestion
+    where: str, cells: Mapping[str, Any], file: ResultsFile, question: JudgeQuestion
 ) -> Received:
     """Return the trial in `cells`, by the names of `COLUMNS` and of metrics.
 

@@ -141,10 +141,6 @@ class RunFolder:
         path = self.failures / f"{key}.txt"
         return path.read_text("utf-8", errors="replace") if path.exists() else ""
 
-    def save_rechecks(self, text: str) -> None:
-        """Write what running some trials again has found."""
-        self._write(self.rechecks, text.encode())
-
     def save_tables(self, trials: Trials, deliveries: Deliveries) -> str:
         """Write what was assembled and return the SHA-256 of the outcomes."""
         data = encode_outcomes(trials)

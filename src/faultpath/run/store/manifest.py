@@ -36,6 +36,7 @@ def read_manifest(path: Path) -> Manifest | None:
     try:
         data = contents(path, LARGEST_TEXT)
         content: Any = read_json(data)
+        # Before the model, which other formats do not fit.
         if content["format"] != FORMAT:
             raise UserError(
                 f"{path.parent} was written in format {content['format']} and this faultpath reads "
@@ -58,26 +59,19 @@ def check_same(folder: Path, previous: Manifest, manifest: Manifest, shared: boo
     in the same folder, and keeps what it has. In a folder that rounds of one plan share, their
     treatments may differ as well.
     """
-    same_plan = (
-        ("set of variants, faults or seeds", previous.plan.rows, manifest.plan.rows),
-        (
-            "number of scenes from analysis to analysis",
-            previous.plan.scenes_per_analysis,
-            manifest.plan.scenes_per_analysis,
-        ),
-    )
-    differences = [
-        what
-        for what, one, two in (
-            ("version of faultpath", previous.faultpath_version, manifest.faultpath_version),
-            ("name", previous.plan.name, manifest.plan.name),
-            ("system", previous.plan.system, manifest.plan.system),
-            ("library", previous.plan.library, manifest.plan.library),
-            ("state of the library", previous.library_hash, manifest.library_hash),
-            *(() if shared else same_plan),
-        )
-        if one != two
-    ]
+    mine, theirs = manifest.plan, previous.plan
+    compared: dict[str, tuple[object, object]] = {
+        "version of faultpath": (previous.faultpath_version, manifest.faultpath_version),
+        "name": (theirs.name, mine.name),
+        "system": (theirs.system, mine.system),
+        "library": (theirs.library, mine.library),
+        "state of the library": (previous.library_hash, manifest.library_hash),
+    }
+    if not shared:
+        compared["set of variants, faults or seeds"] = (theirs.rows, mine.rows)
+        per_analysis = theirs.scenes_per_analysis, mine.scenes_per_analysis
+        compared["number of scenes from analysis to analysis"] = per_analysis
+    differences = [what for what, (before, now) in compared.items() if before != now]
     changed = previous.code.changed(manifest.code)
     if changed and not differences:
         raise UserError(

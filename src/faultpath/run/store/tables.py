@@ -25,7 +25,7 @@ from faultpath.core.files.parquet import (
 )
 from faultpath.loop import TapCount
 from faultpath.run.attempt import Done
-from faultpath.run.trials import STATUSES, Trial, Trials
+from faultpath.run.trials import STATUSES, TEXTS, Trial, Trials
 from faultpath.system.outcome import VEHICLE, Outcome, Status, checked
 
 Trace = NDArray[np.float32]
@@ -34,9 +34,8 @@ _ADDRESS = {"variant": TEXT, "condition": TEXT, "seed": INTEGER, "scene": TEXT}
 _PLACE = {"scene_index": INTEGER, "topology": TEXT}
 _END = {"status": TEXT, "time_s": NUMBER}
 _COUNTS = {"faulted_steps": INTEGER, "altered_steps": INTEGER}
-_HASHES = dict.fromkeys(("initial_hash", "disturbance_hash", "planner_noise_hash"), TEXT)
 _TRAJECTORY = {"trajectory_hash": TEXT}
-_RESULT = {**_COUNTS, **_HASHES, **_TRAJECTORY, "error": TEXT}
+_RESULT = {**_COUNTS, **dict.fromkeys(TEXTS, TEXT), "error": TEXT}
 _TRACE = dict.fromkeys(("x_m", "y_m", "z_m"), NUMBERS)
 _MAY_LACK = ("time_s", "error", *_TRACE)
 _TRACES = {**_ADDRESS, **_TRACE}
@@ -141,19 +140,18 @@ def decode_traces(data: bytes) -> dict[TrialAddress, Trace]:
 
 def traces_of(trials: Trials) -> dict[TrialAddress, Trace]:
     """Return the traces of trials by where these stand."""
-    return {address_of(trials, row): trials.traces[row] for row in sorted(trials.traces)}
-
-
-def address_of(trials: Trials, row: int) -> TrialAddress:
-    """Return where a trial stands in its plan."""
-    place: list[int] = trials.places[row].tolist()
-    variant, condition, seed, scene = place
-    return TrialAddress(
-        trials.variants[variant],
-        trials.conditions[condition],
-        trials.seeds[seed],
-        trials.scenes[scene].id,
-    )
+    traces: dict[TrialAddress, Trace] = {}
+    for row in sorted(trials.traces):
+        place: list[int] = trials.places[row].tolist()
+        variant, condition, seed, scene = place
+        address = TrialAddress(
+            trials.variants[variant],
+            trials.conditions[condition],
+            trials.seeds[seed],
+            trials.scenes[scene].id,
+        )
+        traces[address] = trials.traces[row]
+    return traces
 
 
 def _address(row: Row) -> TrialAddress:
@@ -206,8 +204,8 @@ def _outcome(row: Mapping[str, Any], trace: Trace | None, untimed: bool = False)
     if min(outcome.faulted_steps, outcome.altered_steps) < 0:
         wrong = "a count of steps is below 0"
     elif not outcome.failed:
-        verdict = checked(replace(outcome, time_s=1.0) if unknown else outcome, metrics)
-        wrong = verdict.error if verdict.failed else None
+        result = checked(replace(outcome, time_s=1.0) if unknown else outcome, metrics)
+        wrong = result.error if result.failed else None
     elif fields["time_s"] is not None and not np.isfinite(fields["time_s"]):
         wrong = "time_s is not finite"
     if wrong:

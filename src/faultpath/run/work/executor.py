@@ -110,10 +110,9 @@ class Executor(ABC):
     them to the same one. One that is lost or cancelled is replaced. Leaving the context ends all.
     """
 
-    in_process = False
-    """Whether calls run in this process: nothing is pickled, and no call can be cancelled."""
     count: int = 0
-    """Number of workers, started or not; 0 for this process."""
+    """Number of workers, started or not; 0 where calls run in this process: nothing is pickled, and
+    no call can be cancelled."""
     name: str = ""
     """On what calls run, in words, where that is not this machine."""
 
@@ -218,8 +217,6 @@ def ended(call: Call, on_message: OnMessage) -> Returned | Failed:
 
 class Here(Executor):
     """Runs each call in this process, for tests and debuggers."""
-
-    in_process = True
 
     def __init__(self) -> None:
         self._waiting: tuple[Call, OnMessage] | None = None
