@@ -53,7 +53,7 @@ def decide(
     primary = primary_condition(question.primary or "", conditions)
     facts = facts.model_copy(update={"primary": primary})
     cells = cells_of(question, conditions, trials)
-    # Whether a fault acted is told by receipts, and other tools' results have none.
+    # The delivery log tells whether a fault acted, and other tools' results have none.
     untested = () if facts.judged else untested_conditions(conditions, cells)
     comparison, family = family_of(question, facts, conditions, trials, untested)
     invalid: Invalid | None = "unpaired" if comparison.mismatches else None

@@ -81,7 +81,7 @@ class Audit(Analysis[None]):
 
 
 def faulted_taps(counts: Sequence[TapCount]) -> tuple[FaultedTap, ...]:
-    """Return the taps at which receipts show a fault in force."""
+    """Return the taps at which the delivery log shows a fault in force."""
     return tuple(
         FaultedTap(
             channel=tap.channel,

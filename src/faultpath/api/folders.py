@@ -150,7 +150,7 @@ def _other_effects(record: DecisionRecord) -> Iterator[str]:
 def _other_taps(
     record: DecisionRecord, interface: Interface, deliveries: Deliveries
 ) -> Iterator[str]:
-    """Yield where the record names other faulted taps than interface and receipts."""
+    """Yield where the record names other faulted taps than interface and delivery log."""
     question = record.question
     taps = {(c.name, reader) for c in interface.channels for reader in c.readers}
     for condition in record.conditions:

@@ -224,7 +224,7 @@ def delivered(
         port: values[0] if steps is None else namespace(values[0]).stack(values, axis=1)
         for port, values in got.items()
     }
-    return stacked, taps.receipts().counts()
+    return stacked, taps.delivery_log().counts()
 
 
 def window_taps(

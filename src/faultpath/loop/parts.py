@@ -101,8 +101,8 @@ class Part(ABC):
     """Ports that get what their source held one step before: this is what closes a cycle. At the
     first step that is what the source's module gives as `before`."""
     at_read: frozenset[Port] = frozenset()
-    """Ports that get their reading only in steps in which it is looked at; then receipts count what
-    was read and not what was handed over."""
+    """Ports that get their reading only in steps in which it is looked at; the delivery
+    log then counts what was read and not what was handed over."""
 
     writes: tuple[str, ...] = ()
     """Sources of the interface that it produces at every step; a plant senses its sources."""

@@ -20,6 +20,7 @@ from faultpath.core.text import listed, unknown
 from faultpath.faults import Draws, Fault, Moment
 from faultpath.faults.base import Memory
 from faultpath.interface import Interface, Provenance
+from faultpath.loop.delivery_log import FaultLog, Guard, StepCounter, TapLog
 from faultpath.loop.reading import (
     IllegalRead,
     MalformedReading,
@@ -29,7 +30,6 @@ from faultpath.loop.reading import (
     TapError,
     UndeclaredReader,
 )
-from faultpath.loop.receipts import CorruptionReceipt, Guard, Receipt, Tally
 
 
 class Corruption:
@@ -39,7 +39,7 @@ class Corruption:
 
     def __init__(self, fault: Fault, draws: Draws, dt_s: float) -> None:
         self.fault = fault
-        self.in_force = Tally()
+        self.in_force = StepCounter()
         self._draws = draws
         self._dt_s = dt_s
         self._memories: dict[int, Memory] = {}
@@ -91,8 +91,8 @@ class Tap:
     """Shape of every reading, scenes first."""
     corruptions: tuple[Corruption, ...] = ()
     deliveries: int = 0
-    asks: int = 0
-    """Answers of a query, over all steps."""
+    answers: int = 0
+    """Answers of queries, over all steps."""
     last_step: int = -1
     value: Array = None
     """The value of the step's reading."""
@@ -101,8 +101,8 @@ class Tap:
     finite: Array = None
     """Where the first reading was finite, until that has been looked at."""
     guard: Guard | None = None
-    faulted: Tally = field(default_factory=Tally)
-    altered: Tally = field(default_factory=Tally)
+    faulted: StepCounter = field(default_factory=StepCounter)
+    altered: StepCounter = field(default_factory=StepCounter)
 
     def __str__(self) -> str:
         return f"{self.channel} -> {self.reader}"
@@ -110,17 +110,17 @@ class Tap:
     def add(self, corruption: Corruption) -> None:
         """Let a fault act here; a fault that is alone counts for the whole tap."""
         self.corruptions = (*self.corruptions, corruption)
-        self.faulted = corruption.in_force if len(self.corruptions) == 1 else Tally()
+        self.faulted = corruption.in_force if len(self.corruptions) == 1 else StepCounter()
 
-    def receipt(self, n_scenes: int) -> Receipt:
-        """Return what passed here so far; this waits for the device that holds the counts."""
-        return Receipt(
+    def log(self, n_scenes: int) -> TapLog:
+        """Return the log so far; this waits for the device that holds the counts."""
+        return TapLog(
             channel=self.channel,
             reader=self.reader,
             deliveries=self.deliveries,
-            asks=self.asks,
-            corruptions=tuple(
-                CorruptionReceipt(
+            answers=self.answers,
+            faults=tuple(
+                FaultLog(
                     corruption.fault.describe(),
                     corruption.fault.onset_step,
                     corruption.in_force.counts(n_scenes),

@@ -15,6 +15,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.text import unknown
 from faultpath.faults import Draws, Fault
 from faultpath.interface import Interface, modules
+from faultpath.loop.delivery_log import DeliveryLog, Guard, StepCounter
 from faultpath.loop.reading import (
     MalformedReading,
     Query,
@@ -22,7 +23,6 @@ from faultpath.loop.reading import (
     TapError,
     WrittenTo,
 )
-from faultpath.loop.receipts import Guard, Receipts, Tally, check_delivered
 from faultpath.loop.tap import Corruption, DeliveryListener, Tap, refusal, wire
 from faultpath.loop.trajectory import Trajectories
 
@@ -78,7 +78,7 @@ class Taps:
         self._active: Array = None
         self._placed: Array = None
         self._trajectories = Trajectories(len(self._scenes))
-        self._faulted, self._altered = Tally(), Tally()
+        self._faulted, self._altered = StepCounter(), StepCounter()
         self._open: Array = None
         self._closed: Array = None
         self._taps = wire(interface, bindings or {}, readers, privileged, len(scenes))
@@ -180,8 +180,8 @@ class Taps:
                 "was delivered in this step"
             )
         answer = read_only(query.answer(request))
-        ask, first = next(numbers), not tap.asks
-        tap.asks += 1
+        ask, first = next(numbers), not tap.answers
+        tap.answers += 1
         got = answer
         if first or tap.corruptions or tap.guard:
             clean = value = query.value(answer)
@@ -217,7 +217,7 @@ class Taps:
         return value
 
     def set_active(self, mask: Array | None) -> None:
-        """Say which scenes still run, a boolean array `[B]`; `None`: all. Receipts count these."""
+        """Set which scenes still run, bool `[B]`; `None`: all. Only these are counted."""
         self._active = self._placed = mask
         self._trajectories.set_running(mask)
 
@@ -244,12 +244,12 @@ class Taps:
 
         return ModuleTaps(module, deliver)
 
-    def receipts(self) -> Receipts:
-        """Return what was delivered so far; this waits for the device that holds the counts."""
+    def delivery_log(self) -> DeliveryLog:
+        """Return the log so far; this waits for the device that holds the counts."""
         n = len(self._scenes)
-        return Receipts(
+        return DeliveryLog(
             scenes=self._scenes,
-            taps=tuple(tap.receipt(n) for tap in self._taps.values()),
+            taps=tuple(tap.log(n) for tap in self._taps.values()),
             steps_faulted=self._faulted.counts(n),
             steps_altered=self._altered.counts(n),
         )
@@ -258,7 +258,7 @@ class Taps:
         """Check that each fault reached the readers that it names, and nobody else.
 
         `last_step`: the last control step at which each scene ran, `[B]` or one for all. Raises as
-        `check_delivered`, `NotFinite` for a first reading on an accelerator, and `WrittenTo` of a
+        `DeliveryLog.check`, `NotFinite` for a first reading on an accelerator, and `WrittenTo` of a
         guarded reader that wrote.
         """
         for tap in self._taps.values():
@@ -269,4 +269,4 @@ class Taps:
                     "copy it before writing"
                 )
         last = np.broadcast_to(np.asarray(last_step, dtype=np.int64), (len(self._scenes),))
-        check_delivered(self.receipts(), self._named, last)
+        self.delivery_log().check(self._named, last)

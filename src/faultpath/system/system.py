@@ -115,8 +115,8 @@ class System(ABC):
     def run(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> Sequence[Outcome]:
         """Run one trial in each scene, in order; every reading goes through `taps`.
 
-        The taps are new, and for these scenes. Who runs the block fills `faulted_steps` and
-        `altered_steps` in from their receipts.
+        The taps are new and for these scenes. The caller fills in `faulted_steps` and
+        `altered_steps` from their delivery log.
         """
 
     def scenes_a_block(self, scenes: int) -> int:
