@@ -13,9 +13,9 @@ from faultpath.core.arrays import (
     copy,
     is_zero,
     like,
+    match_device,
     namespace,
     pick,
-    place,
     rows,
 )
 from faultpath.faults.base import Intervention, Memory, Moment, number
@@ -178,7 +178,7 @@ class Dropout(Intervention):
         """Return the reading where it arrives and the substitute where it is lost."""
         if at.elapsed < 0 or not self.probability:
             return reading, copy(reading)
-        arrives = place(at.draws.uniform((), at.step) >= self.probability, reading)
+        arrives = match_device(at.draws.uniform((), at.step) >= self.probability, reading)
         last = pick(arrives, reading, memory)
         if self.substitute is None:
             return last, last
@@ -218,7 +218,7 @@ class Shuffle(Intervention):
         if at.elapsed < 0:
             return reading, None
         xp = namespace(reading)
-        order = place(at.draws.permutation(reading.shape[self.axis], at.step), reading)
+        order = match_device(at.draws.permutation(reading.shape[self.axis], at.step), reading)
         ones = [1] * (reading.ndim - 1)
         ones[self.axis - 1] = -1
         order = xp.broadcast_to(xp.reshape(order, (order.shape[0], *ones)), reading.shape)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from typing_extensions import override
 
-from faultpath.core.arrays import HostArray, is_array, namespace, place, to_numpy
+from faultpath.core.arrays import HostArray, is_array, match_device, namespace, to_numpy
 from faultpath.core.errors import UserError
 from faultpath.faults import ALL, Erase, Fault
 from faultpath.interface import Interface
@@ -121,7 +121,7 @@ class _Withheld(Module):
         floating = namespace(sample).isdtype(sample.dtype, "real floating")
         for port, value in self._values.items():
             rows = np.array(np.broadcast_to(value, (scenes, *value.shape)), dtype=float)
-            readings[port] = place(rows, sample, sample.dtype if floating else None)
+            readings[port] = match_device(rows, sample, sample.dtype if floating else None)
         filled = Inputs(
             inputs.module, inputs.step, readings, truths, inputs.running, inputs.at_read
         )

@@ -7,7 +7,7 @@ from numbers import Integral, Real
 from os import PathLike
 from typing import Any, cast
 
-from faultpath.core.error_source import described, place
+from faultpath.core.error_source import described, location
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.interface import Interface
 from faultpath.loop.tap import wire
@@ -136,7 +136,7 @@ def _declared(system: System, attribute: str, label: str) -> Any:
         # Without the attribute in its class there is no property that could fail.
         if not isinstance(error, AttributeError) or hasattr(type(system), attribute):
             mistake = SystemMistake(f"{label}: `{attribute}` fails ({described(error)})")
-            mistake.place = place(error)
+            mistake.location = location(error)
             raise mistake from error
         value = None
     may_be_none = attribute == "block_size"  # then the library decides

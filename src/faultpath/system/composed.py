@@ -182,7 +182,7 @@ class ComposedSystem(LoopSystem):
                     mistake = SystemMistake(
                         f"system '{self.name}': module '{module.name}': {wrong}"
                     )
-                    mistake.place = module.place if isinstance(module, FunctionModule) else ""
+                    mistake.location = module.location if isinstance(module, FunctionModule) else ""
                     raise mistake
         if plant.action in feeds and not {*feeds[plant.action]} & {*written}:
             raise SystemMistake(

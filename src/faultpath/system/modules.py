@@ -9,7 +9,7 @@ import numpy as np
 from typing_extensions import override
 
 from faultpath.core.arrays import is_array, namespace
-from faultpath.core.error_source import described, ours, place
+from faultpath.core.error_source import described, location, ours
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import near, unknown
 from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
@@ -132,7 +132,7 @@ class FunctionModule(Module):
         return f"{self.name} ({', '.join(words)})" if words else self.name
 
     @property
-    def place(self) -> str:
+    def location(self) -> str:
         """File and line of the function; nothing for what is not a user's own function."""
         function: Any = unwrap(self._function)
         code = getattr(function, "__code__", None)
@@ -151,7 +151,7 @@ class FunctionModule(Module):
             f"its {' and '.join(numbers)}, where a reading has one value a scene: let it take "
             "both, or correct it there"
         )
-        mistake.place = place(error)
+        mistake.location = location(error)
         return mistake
 
     @override
