@@ -54,7 +54,7 @@ class Skewed(NamedTuple):
         counts = stream.multinomial(self.scenes, self.chances, size=runs).astype(np.float64)
         values = np.arange(-self.seeds, self.seeds + 1) / self.seeds
         counts, times = np.unique(counts, axis=0, return_counts=True)
-        significant = times * detected(values, counts, ALPHA, graded=True)
+        significant = times * detected(values, counts, ALPHA)
         first = float(significant[counts @ values > 0.0].sum()) / runs
         both = float(significant.sum()) / runs
         return both, max(first, both - first)

@@ -5,7 +5,6 @@ from faultpath.analyses.tables import MISSING, Line, Table, line
 from faultpath.analyses.tables.terminal import drawn
 from faultpath.api.display import SafeConsole
 from faultpath.stats.contrast import Contrast
-from faultpath.stats.effects import WindowQuantiles
 from faultpath.stats.estimate import Estimate
 
 __all__ = [
@@ -15,7 +14,6 @@ __all__ = [
     "Line",
     "SafeConsole",
     "Table",
-    "WindowQuantiles",
     "counted",
     "drawn",
     "interval",

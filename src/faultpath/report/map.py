@@ -14,7 +14,7 @@ from faultpath.analyses.tables.markdown import block
 from faultpath.report.frame import render, write_pages
 from faultpath.report.map_pictures import correlation_picture, map_picture
 from faultpath.run.provenance import RunProvenance
-from faultpath.stats.contrast import MIN_SCENES
+from faultpath.stats.power import MIN_SCENES
 
 
 def tables(record: MapRecord) -> tuple[Table, ...]:

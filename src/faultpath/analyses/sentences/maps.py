@@ -6,7 +6,7 @@ from faultpath.analyses.map.lattice import SHARED
 from faultpath.analyses.map.model import Flip, MapFacts, MapPoint, MapResult
 from faultpath.analyses.sentences.phrases import NO_RESULT
 from faultpath.analyses.sentences.wording import MINUS, plain, series, signed
-from faultpath.stats.contrast import MIN_SCENES
+from faultpath.stats.power import MIN_SCENES
 
 
 def estimand(facts: MapFacts) -> str:
