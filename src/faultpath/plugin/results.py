@@ -1,4 +1,4 @@
-"""For a verb that shows results: estimates with intervals, tables, and numbers as all pages do."""
+"""For a verb that shows results: estimates with intervals, tables, and the format of numbers."""
 
 from faultpath.analyses.sentences.wording import counted, interval, plain
 from faultpath.analyses.tables import MISSING, Line, Table, line
