@@ -19,7 +19,7 @@ from faultpath.analyses.family import TestedContrasts, decide_conditions
 from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.core.streams import generator
 from faultpath.stats.estimate import ALPHA
-from faultpath.stats.power import detectable, detected, rule_power
+from faultpath.stats.power import detectable, rule_power, significant
 from faultpath.stats.score import degrees_interval, degrees_rejects
 
 Floats = NDArray[np.float64]
@@ -117,7 +117,7 @@ def powered(seeds: int, scenes: int = 100, runs: int = 20_000) -> float:
         return rule_power(scenes, truth.rate, truth.mean)
     stream = generator("statistics", f"power {scenes} {truth}", 0)
     counts = stream.multinomial(scenes, truth.chances(), size=runs).astype(np.float64)
-    return float(detected(truth.sizes, counts, ALPHA).mean())
+    return float(significant(truth.sizes, counts, ALPHA).mean())
 
 
 def tables(n: int) -> Floats:
@@ -279,7 +279,7 @@ def detection(scenes: int, truth: Population, alpha: float, runs: int = 20) -> f
             shares.append(rule_power(scenes, rate, least / 100.0, alpha))
             continue
         counts = stream.multinomial(scenes, true.chances(), size=400).astype(np.float64)
-        shares.append(float(detected(true.sizes, counts, alpha).mean()))
+        shares.append(float(significant(true.sizes, counts, alpha).mean()))
     return float(np.mean(shares))
 
 

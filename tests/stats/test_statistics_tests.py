@@ -18,7 +18,7 @@ from faultpath.stats.contrast import change
 from faultpath.stats.decisions import with_test
 from faultpath.stats.distributions import sign_p_value
 from faultpath.stats.effects import success_effect
-from faultpath.stats.power import detected, rule_power
+from faultpath.stats.power import rule_power, significant
 from faultpath.stats.score import reach, rejects
 
 PAIR = hnp.arrays(np.bool_, st.tuples(st.just(2), st.integers(1, 30), st.integers(1, 4)))
@@ -116,12 +116,12 @@ def test_power_takes_the_test_that_decides(alpha):
         effect = found(wins, losses)
         counts = np.array([[(sums == size).sum() for size in range(-3, 4)]], dtype=float)
         expected = effect.test.p_value <= alpha and effect.sign_of_interval != 0
-        assert detected(values, counts, alpha)[0] == expected
+        assert significant(values, counts, alpha)[0] == expected
 
 
 def power(scenes, population, runs=6000):
     counts = np.random.default_rng(1).multinomial(scenes, population.chances(), size=runs) * 1.0
-    return detected(population.sizes, counts, 0.05).mean()
+    return significant(population.sizes, counts, 0.05).mean()
 
 
 @pytest.mark.parametrize("alike", [0.5, 0.97, 0.99])

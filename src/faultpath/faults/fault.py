@@ -140,10 +140,10 @@ def resolve(
     resolved: list[Fault] = []
     for fault, channel in zip(faults, channels, strict=True):
         _check_readers(fault.readers, channels, interface)
-        wrong = fault.intervention.misfit(interface.source(channel.sources[0]).shape)
-        if wrong:
+        reason = fault.intervention.misfit(interface.source(channel.sources[0]).shape)
+        if reason:
             raise UserError(
-                f"channel '{fault.channel}': {fault.intervention.kind} does not fit: {wrong}"
+                f"channel '{fault.channel}': {fault.intervention.kind} does not fit: {reason}"
             )
         update = {
             "readers": channel.readers,

@@ -179,7 +179,7 @@ class _Execution:
                 f"module writes; read '{source}' at this step and keep its earlier value in memory"
             )
         return (
-            f"nobody says what source '{source}' held before the first step: write "
+            f"no value of source '{source}' is known before the first step: write "
             f'`@writes("{source}", before=0.0)`, or return it from before() of its module'
         )
 

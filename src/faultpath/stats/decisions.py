@@ -83,14 +83,14 @@ def decide_family(
         if shares:
             critical = alpha * shares[name]
         else:
-            left = dict(weight)
+            remaining = dict(weight)
             for other in ordered:
                 if other == name:
                     continue
-                if p_values[other] > alpha * weight[other] / ordered_sum(left.values()):
+                if p_values[other] > alpha * weight[other] / ordered_sum(remaining.values()):
                     break
-                del left[other]
-            critical = alpha * weight[name] / ordered_sum(left.values())
+                del remaining[other]
+            critical = alpha * weight[name] / ordered_sum(remaining.values())
         test = tests[name]._replace(sign=sign, corrected_p=adjusted[name], critical_p=critical)
         corrected[name] = replace(contrast, test=test)
     return corrected
@@ -102,8 +102,8 @@ def holm(p_values: Mapping[str, float], weights: Mapping[str, float]) -> dict[st
     adjusted: dict[str, float] = {}
     largest = 0.0
     for index, name in enumerate(ordered):
-        left = ordered_sum(weights[other] for other in ordered[index:])
-        largest = max(largest, min(1.0, left / weights[name] * p_values[name]))
+        remaining = ordered_sum(weights[other] for other in ordered[index:])
+        largest = max(largest, min(1.0, remaining / weights[name] * p_values[name]))
         adjusted[name] = largest
     return adjusted
 

@@ -89,8 +89,8 @@ def _mean(
         method = "confidence sequence by betting on scene means"
     else:
         name = "Wilson" if scenes.centre else "Tango"
-        several = f"score on scene means ({name}'s, cluster-robust)"
-        method = f"score ({name})" if n_seeds == 1 else several
+        by_scene = f"score on scene means ({name}'s, cluster-robust)"
+        method = f"score ({name})" if n_seeds == 1 else by_scene
         method = f"hull of {method} and Student's t over seeds" if models else method
     scale = scenes.scale if scenes else 1.0
     # Sums of binary outcomes are whole numbers and so exact; dividing last makes a resampled mean
@@ -146,9 +146,9 @@ def median_effect(
         value=float(np.median(means)),
         draws=quantiles(resamples.counts, means, np.flatnonzero(used), 0.5),
         per_seed=tuple(
-            float(np.median(column[seen]))
-            for column, seen in zip(difference.T, mask.T, strict=True)
-            if seen.any()
+            float(np.median(column[joint_scenes]))
+            for column, joint_scenes in zip(difference.T, mask.T, strict=True)
+            if joint_scenes.any()
         ),
         unit="s",
         method="median of paired differences, percentile bootstrap of scenes",

@@ -172,7 +172,7 @@ class ManyPairs:
         It is 1 where all pairs are discordant, because their number is then no longer even or odd
         at random.
         """
-        left = self.n_pairs - discordants
-        step, last = np.zeros_like(left), left < _LAST
-        step[last] = (1.0 - 2.0 * left[last] / self.n_pairs) ** self.n_pairs
+        concordant = self.n_pairs - discordants
+        step, last = np.zeros_like(concordant), concordant < _LAST
+        step[last] = (1.0 - 2.0 * concordant[last] / self.n_pairs) ** self.n_pairs
         return step

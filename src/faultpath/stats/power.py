@@ -122,10 +122,10 @@ def simulated_power(
     values, chances = np.arange(-seeds, seeds + 1) / seeds, np.maximum(chances, 0.0) / chances.sum()
     stream = generator("detectable", "", n_scenes)
     counts = stream.multinomial(n_scenes, chances, size=AUDITS).astype(np.float64)
-    return float(detected(values, counts, alpha, test).mean())
+    return float(significant(values, counts, alpha, test).mean())
 
 
-def detected(
+def significant(
     values: Floats, counts: Floats, alpha: float, test: FixedSize = "unconditional"
 ) -> NDArray[np.bool_]:
     """Return [audits]: whether test and interval of several seeds find the same side ahead.

@@ -36,14 +36,14 @@ class Resamples:
         """Draw from the stream ("bootstrap", label, seed); ``label`` names the scene library."""
         if n_scenes < 1 or n_resamples < 1:
             raise ValueError(f"cannot draw {n_resamples} resamples of {n_scenes} scenes")
-        stream, drawn = generator("bootstrap", label, seed), np.empty((n_resamples, n_scenes))
+        stream, counts = generator("bootstrap", label, seed), np.empty((n_resamples, n_scenes))
         for rows in _blocks(n_resamples, n_scenes):  # their size does not change the draws
-            part = drawn[rows]
+            part = counts[rows]
             chosen = stream.integers(0, n_scenes, size=part.shape)
             chosen += n_scenes * np.arange(len(part))[:, np.newaxis]
             part[:] = np.bincount(chosen.ravel(), minlength=part.size).reshape(part.shape)
-        drawn.setflags(write=False)  # shared by many effects
-        return cls(label=label, seed=seed, counts=drawn)
+        counts.setflags(write=False)  # shared by many effects
+        return cls(label=label, seed=seed, counts=counts)
 
     @property
     def n_resamples(self) -> int:

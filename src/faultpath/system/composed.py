@@ -89,7 +89,7 @@ class ComposedSystem(LoopSystem):
         self._plant, self._scenes = plant, seeds_of(scenes)
         self._data_files = tuple(data_files)
         self.components = dict[str, tuple[str, ...]]()
-        units, several = units_of(units), channels_of(channels or {})
+        units, alternatives = units_of(units), channels_of(channels or {})
         self._parts, self._wirings = dict[str, Parts](), dict[str, Wiring]()
         for variant, parts in variants_of(variants).items():
             modules = modules_of(variant, parts.of(None) if isinstance(parts, Parts) else parts)
@@ -98,10 +98,10 @@ class ComposedSystem(LoopSystem):
             written = [name for module in modules for name in module.writes]
             bindings = {
                 channel: next((n for n in (*written, *plant.senses) if n in sources), sources[0])
-                for channel, sources in several.items()
+                for channel, sources in alternatives.items()
             }
             self._wirings[variant] = Wiring(self._parts[variant].description, bindings)
-        self._interface = self._declared(units, several, plant.shapes)
+        self._interface = self._declared(units, alternatives, plant.shapes)
         recorder = _ShapeRecorder()
         for variant in self._parts:
             wired = self.wirings[variant].bindings
@@ -112,7 +112,7 @@ class ComposedSystem(LoopSystem):
             )
             for world in first.state.worlds:
                 world.close()
-        self._interface = self._declared(units, several, plant.shapes | recorder.shapes)
+        self._interface = self._declared(units, alternatives, plant.shapes | recorder.shapes)
 
     @property
     @override
@@ -159,7 +159,7 @@ class ComposedSystem(LoopSystem):
     def _declared(
         self,
         units: Mapping[str, str | Mapping[str, Any]],
-        several: Mapping[str, Sequence[str]],
+        alternatives: Mapping[str, Sequence[str]],
         shapes: Mapping[str, tuple[int, ...]],
     ) -> Interface:
         """Return the interface; a source of unknown shape counts as a number."""
@@ -168,14 +168,14 @@ class ComposedSystem(LoopSystem):
         read = dict.fromkeys(
             port.channel for part in (*modules, plant) for port in sorted(part.ports)
         )
-        feeds = {channel: several.get(channel, (channel,)) for channel in read}
+        feeds = {channel: alternatives.get(channel, (channel,)) for channel in read}
         # Until a first step shows a module's output, it has the shape of the source it replaces.
         for fed in feeds.values():
             if shaped := [name for name in fed if name in shapes]:
                 shapes = dict.fromkeys(fed, shapes[shaped[0]]) | dict(shapes)
         written = [name for module in modules for name in module.writes]
         known = dict.fromkeys(plant.senses, "measured") | dict.fromkeys(plant.facts, "estimated")
-        known |= dict.fromkeys(several.get(plant.action, (plant.action,)), "commanded")
+        known |= dict.fromkeys(alternatives.get(plant.action, (plant.action,)), "commanded")
         for module in modules:
             for port in sorted(module.ports):
                 if not {*feeds[port.channel]} & {*plant.senses, *plant.facts, *written}:

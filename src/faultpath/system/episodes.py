@@ -64,7 +64,7 @@ class SceneInstance:
     """Hash of the disturbances that its set-up made."""
     step: Callable[[HostArray, int], tuple[Any, float, bool, bool, Mapping[str, Any]]]
     """Takes an action and the step; returns observation, reward, terminated, truncated, info."""
-    seen: Callable[[], Any]
+    view: Callable[[], Any]
     """Returns the argument of `trace` and `render`: the environment, or the state."""
     close: Callable[[], None] = lambda: None
     """Frees its resources."""
@@ -87,8 +87,8 @@ class _Batch:
     """State of a batch."""
 
     worlds: Sequence[SceneInstance]
-    seen: list[Any]
-    """The last observation of each world."""
+    observations: list[Any]
+    """Latest observation of each world."""
     sensed: dict[str, HostArray]
     running: HostArray
     succeeded: HostArray
@@ -166,11 +166,11 @@ class EpisodePlant(Plant):
     @override
     def start(self, batch: Batch) -> _Batch:
         worlds, n = [self.world(name, batch.seed) for name in batch.scenes], len(batch.scenes)
-        seen = [world.observation for world in worlds]
-        sensed = self._sensed(worlds, seen)
+        observations = [world.observation for world in worlds]
+        sensed = self._sensed(worlds, observations)
         return _Batch(
             worlds=worlds,
-            seen=seen,
+            observations=observations,
             sensed=sensed,
             running=np.ones(n, bool),
             succeeded=np.zeros(n, bool),
@@ -188,7 +188,7 @@ class EpisodePlant(Plant):
             return None
         positions = np.zeros((len(worlds), 3))
         for row, world in zip(positions, worlds, strict=True):
-            position = np.ravel(self._trace(world.seen()))
+            position = np.ravel(self._trace(world.view()))
             if not 0 < len(position) < 4:
                 raise SystemMistake(
                     f"`trace` returned {len(position)} numbers: give x, y and z in metres"
@@ -205,7 +205,7 @@ class EpisodePlant(Plant):
         plant has no `render`."""
         if self._render is None:
             return None
-        lines = [np.asarray(self._render(world.seen()), float) for world in state.worlds]
+        lines = [np.asarray(self._render(world.view()), float) for world in state.worlds]
         if any(line.ndim != 2 or line.shape != (len(lines[0]), 2) for line in lines):
             raise SystemMistake(
                 "`render` must return points (x, y) in metres, as many at each step; it returned "
@@ -226,8 +226,8 @@ class EpisodePlant(Plant):
         info: list[Mapping[str, Any]] = [{} for _ in running]
         for i in map(int, np.flatnonzero(running)):
             result = state.worlds[i].step(action[i], inputs.step)
-            state.seen[i], rewards[i], ends[0, i], ends[1, i], info[i] = result
-        sensed = self._sensed(state.worlds, state.seen)
+            state.observations[i], rewards[i], ends[0, i], ends[1, i], info[i] = result
+        sensed = self._sensed(state.worlds, state.observations)
         before, state.sensed, all_run = state.sensed, {}, running.all()
         for name, old in before.items():
             value = sensed[name]
