@@ -113,10 +113,10 @@ class _Execution:
         }
         """Only those with a reader."""
         self._ports = {id(part): tuple(_ports_of(part, graph)) for part in graph.parts}
-        self._past: dict[str, Reading] = {}
+        self._previous: dict[str, Reading] = {}
         self._state = graph.plant.start(batch)
         self._memories = [module.begin(batch) for module in graph.modules]
-        self._now = {
+        self._current = {
             name: Reading(value, name, -1)
             for module in graph.modules
             for name, value in module.before(batch).items()
@@ -132,32 +132,32 @@ class _Execution:
             if over or (over is None and not running.any()):
                 break
             self._taps.set_active(running)
-            self._past, self._now = self._now, {}
+            self._previous, self._current = self._current, {}
             sensed = plant.sense(state)
-            self._hold(plant, sensed, step, plant.senses)
+            self._sample(plant, sensed, step, plant.senses)
             truths = {name: _returned(plant, sensed, name, step) for name in plant.shows}
             for index, module in enumerate(modules):
                 inputs = self._inputs(module, step, truths, running)
                 outputs, memories[index] = module.step(inputs, memories[index])
-                self._hold(module, outputs, step, module.writes)
+                self._sample(module, outputs, step, module.writes)
             inputs = self._inputs(plant, step, {}, running)
             yield Instant(step, state, inputs)
             state = plant.advance(state, inputs)
             step += 1
         yield Instant(step, state, Inputs(plant.name, step, {}, {}))
 
-    def _hold(self, part: Part, outputs: Outputs, step: int, names: tuple[str, ...]) -> None:
+    def _sample(self, part: Part, outputs: Outputs, step: int, names: tuple[str, ...]) -> None:
         """Sample those of a part's sources that have a reader."""
         for name in names:
             if name in self._sources:
                 value = _returned(part, outputs, name, step)
-                self._now[name] = self._sources[name].read(value, step)
+                self._current[name] = self._sources[name].read(value, step)
 
     def _inputs(self, part: Part, step: int, truths: Mapping[str, Any], running: Array) -> Inputs:
         delivered: dict[tuple[str, str], Any] = {}
         at_read: dict[Port, Callable[[], Any]] = {}
         for port, reader, source, past, at_read_only in self._ports[id(part)]:
-            reading = self._past.get(source) if past else self._now[source]
+            reading = self._previous.get(source) if past else self._current[source]
             if reading is None:
                 raise SystemMistake(
                     f"{label_of(part)} reads what channel '{port.channel}' held one step before, "

@@ -95,8 +95,8 @@ class Taps:
         self._add(faults, dt_s, seed)
 
     def _add(self, faults: Iterable[Fault], dt_s: float, seed: int) -> None:
+        # One object for equal draws, so that numbers are drawn once for all readers.
         shared: dict[Draws, Draws] = {}
-        """One object for equal draws, so that numbers are drawn once for all of their readers."""
         loaded: dict[Draws | None, Fault] = {}
         for fault in faults:
             draws = fault.draws(self._scenes, seed)

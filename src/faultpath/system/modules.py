@@ -77,7 +77,7 @@ class FunctionModule(Module):
         parameters = dict(signature(function).parameters)
         if of is not None:  # the first argument gets the objects
             parameters.pop(next(iter(parameters), ""), None)
-            self._called_with, made_of = tuple(parameters), _required(of)
+            self._called_with, made_of = tuple(parameters), _required_arguments(of)
             self._made_of = tuple(made_of)
             parameters |= made_of
             if made_of.keys() <= values.keys():
@@ -211,8 +211,7 @@ class FunctionModule(Module):
         return {self.writes[0]: value}, memory
 
 
-def _required(make: Callable[..., Any]) -> dict[str, Parameter]:
-    """Return the required arguments of a function."""
+def _required_arguments(make: Callable[..., Any]) -> dict[str, Parameter]:
     try:
         parameters = signature(make).parameters
     except ValueError:  # such as that of `dict`

@@ -128,7 +128,6 @@ class Walk:
 
 
 def _members(holder: Any) -> Iterator[tuple[str, Any]]:
-    """Yield the values that an object holds, with their names."""
     if isinstance(holder, MethodType):
         yield "__self__", holder.__self__
     elif isinstance(holder, FunctionType):
