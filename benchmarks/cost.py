@@ -60,8 +60,8 @@ def _one_scene() -> float:
         readers=variant.readers,
     )
     (outcome,) = _SYSTEM.run(variant.name, [SCENE], taps, 0)
-    if len(taps.receipts().taps) != TAPS:
-        raise RuntimeError(f"the arm has {len(taps.receipts().taps)} taps: correct TAPS")
+    if len(taps.delivery_log().taps) != TAPS:
+        raise RuntimeError(f"the arm has {len(taps.delivery_log().taps)} taps: correct TAPS")
     missed_rad = outcome.metrics["missed_rad"]
     assert missed_rad is not None
     return missed_rad

@@ -42,7 +42,7 @@ def _tests(scenes: int) -> Side:
         family = decide_conditions(success)
         for effect in family.effects.values():
             assert effect.pairs is not None
-            detectable(effect.pairs, graded=True, on_top=True)
+            detectable(effect.pairs, on_top=True)
         break_even(family.effects[CORRECT], family.effects[SHARED])
 
     return Side(work, scenes)

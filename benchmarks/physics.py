@@ -79,7 +79,7 @@ def interval() -> tuple[float | None, float | None]:
     """Return the ends of our interval of the effect, percentage points."""
     treatments = outcomes()
     resamples = Resamples.draw("benchmark", len(treatments[0]), n_resamples=RESAMPLES)
-    effect = success_effect(*treatments, resamples).estimate()
+    effect = success_effect(*treatments, resamples, test="conditional").estimate()
     return effect.low, effect.high
 
 

@@ -1,4 +1,4 @@
-"""The record says which taps were faulted in flight, from receipts and not from the plan."""
+"""The record says which taps were faulted: from the delivery log, not from the plan."""
 
 import pytest
 from toy_audits import TOY

@@ -79,7 +79,7 @@ def changed(name: str, change: Callable[[dict], object]) -> Change:
     return lambda run: edit(run / name, change)
 
 
-system, record, receipts, provenance = (
+system, record, deliveries, provenance = (
     partial(changed, f"{name}.json") for name in ("system", "record", "deliveries", "provenance")
 )
 
@@ -130,14 +130,17 @@ FORGED: dict[str, tuple[str, Change]] = {
         "injection points",
         record(lambda c: c["conditions"][1].update(faulted=[TAP])),
     ),
-    "receipts of nothing": ("delivery log leaves out", receipts(lambda c: c.update(rows=[]))),
-    "receipts of other taps": (
+    "a log of nothing": (
+        "delivery log leaves out",
+        deliveries(lambda c: c.update(rows=[])),
+    ),
+    "a log of other taps": (
         "delivery log and result differ",
-        receipts(lambda c: [row.update(taps=[]) for row in c["rows"]]),
+        deliveries(lambda c: [row.update(taps=[]) for row in c["rows"]]),
     ),
     "a finding that is kept back": (
         "leaves out a finding",
-        receipts(lambda c: c.update(findings=[{"kind": "unrecorded", "error": "no"}])),
+        deliveries(lambda c: c.update(findings=[{"kind": "unrecorded", "error": "no"}])),
     ),
     "an odd status": ("won", first("status", "won")),
     "no seed": ("outcomes.parquet", table(lambda table: table.drop_columns(["seed"]))),

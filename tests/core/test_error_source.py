@@ -5,7 +5,7 @@ import sys
 import pyarrow as pa
 import pytest
 
-from faultpath.core.error_source import ours, place
+from faultpath.core.error_source import location, ours
 
 
 def test_a_distribution_that_carries_our_name_answers_for_its_own_mistakes(tmp_path, monkeypatch):
@@ -23,7 +23,7 @@ def test_a_distribution_that_carries_our_name_answers_for_its_own_mistakes(tmp_p
         with pytest.raises(IndexError) as found:
             fails()
         found.value.__traceback__ = found.value.__traceback__.tb_next  # without this test's own
-        said.append(place(found.value))
+        said.append(location(found.value))
     assert said[0] == ""
     assert said[1].endswith("mine_zz.py, line 1")
     assert ours("faultpath_zz")
@@ -35,4 +35,4 @@ def test_what_a_package_compiled_from_cython_is_nobodys_system():
     with pytest.raises(KeyError) as found:
         pa.table({"a": [1]}).column("b")
     found.value.__traceback__ = found.value.__traceback__.tb_next
-    assert place(found.value) == ""
+    assert location(found.value) == ""

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from libraries import LIBRARIES
 
+import faultpath.faults
 from faultpath.core.streams import generator
 from faultpath.faults import (
     Bias,
@@ -243,3 +244,8 @@ def test_says_why_it_does_not_fit(
 ) -> None:
     said = intervention.misfit(shape)
     assert said is misfit if misfit is None else (said or "").startswith(misfit)
+
+
+def test_every_kind_is_a_public_name():
+    kinds = {kind.__name__ for kind in faultpath.faults.INTERVENTIONS.values()}
+    assert kinds <= set(faultpath.faults.__all__)

@@ -63,9 +63,9 @@ def test_rate_and_latency_of_a_source_are_executed(place, seen) -> None:
 def test_every_answer_of_a_query_passes_the_tap() -> None:
     planner = Planner(asks=3)
     _, taps = execute((Guess(), planner), fault("clearance:offset=10"))
-    receipt = taps.receipts().at("clearance", "planner.cost")
-    assert (receipt.deliveries, receipt.asks) == (8, 24)
-    assert receipt.steps_faulted.tolist() == receipt.steps_altered.tolist() == [8, 8]
+    tap = taps.delivery_log().at("clearance", "planner.cost")
+    assert (tap.deliveries, tap.answers) == (8, 24)
+    assert tap.steps_faulted.tolist() == tap.steps_altered.tolist() == [8, 8]
     assert all(answer[0, 0] == 9.0 for answer in planner.answers[0])
 
 
@@ -121,7 +121,7 @@ PEEKING = odd(Guess, step=lambda self, inputs, memory: inputs.truth("true_place"
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [
-        (SILENT, "'observer' reads what channel 'action' held one step before, but nobody says"),
+        (SILENT, "'observer' reads what channel 'action' held one step before, but no value"),
         (LATE, "source 'place' is the plant's: .* read 'place' at this step and keep its earlier"),
         (RING, "observer -> planner; .*reads_past"),
         (MUTE, "'observer' writes source 'guess', but at step 0"),

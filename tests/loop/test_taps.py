@@ -114,7 +114,7 @@ class TestModuleView:
         assert not hasattr(view.deliver, "__self__")
         assert "Scale" not in repr(view)
         assert "factor" not in repr(view)
-        for name in ("state", "receipts", "faults", "taps", "_taps", "verify"):
+        for name in ("state", "delivery_log", "faults", "taps", "_taps", "verify"):
             with pytest.raises(AttributeError):
                 getattr(view, name)
         with pytest.raises(AttributeError):
@@ -156,7 +156,7 @@ def test_a_second_delivery_is_the_first_one_with_a_fault_and_without(faults, to)
         deliver(taps, to([1.0, 4.0]))
     with pytest.raises(MalformedReading, match="step 0 brings two different readings"):
         deliver(taps, to([[1.0, 3.0]]))
-    assert taps.receipts().at("mass", "observer.model").deliveries == 1
+    assert taps.delivery_log().at("mass", "observer.model").deliveries == 1
 
 
 @CLEAN_OR_NULL

@@ -48,7 +48,7 @@ def test_values_that_their_owner_writes_to_later_count_as_they_were():
 
 def test_taking_in_early_changes_nothing(monkeypatch):
     whole = hashes()
-    monkeypatch.setattr("faultpath.loop.trajectory._MOST_WAITING", 1)
+    monkeypatch.setattr("faultpath.loop.trajectory._LARGEST_BUFFER", 1)
     assert hashes() == whole
 
 

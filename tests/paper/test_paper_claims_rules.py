@@ -1,6 +1,6 @@
 """Each rule of the claims: when it confirms, when it refutes, and when it leaves open."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -22,9 +22,10 @@ from faultpath_paper.claims.rules import (
     within,
 )
 from faultpath_paper.claims.statement import Turned
+from faultpath_paper.detection import least_detectable, resampled
 from faultpath_paper.results import decisive
 
-from faultpath.stats.contrast import Contrast, change, weighted_sum
+from faultpath.stats.contrast import Contrast, change, percentile_interval, weighted_sum
 from faultpath.stats.decisions import with_test
 from faultpath.stats.effects import mean_effect, success_effect
 from faultpath.stats.estimate import PairedTest
@@ -34,12 +35,24 @@ Interval = tuple[float, float] | None
 UP, DOWN, OPEN = (5.0, 15.0), (-15.0, -5.0), (-5.0, 15.0)
 
 
+@dataclass(frozen=True, eq=False)
+class WithLeast(Contrast):
+    mde: float | None = None
+    """Least detectable difference, in place of the one that would be computed."""
+
+
+@pytest.fixture(autouse=True)
+def given_least(monkeypatch):
+    def least(contrast: Contrast) -> float | None:
+        return contrast.mde if isinstance(contrast, WithLeast) else least_detectable(contrast)
+
+    monkeypatch.setattr("faultpath_paper.claims.rules.least_detectable", least)
+
+
 def shown(value: float, interval: Interval, n_scenes=100, test=None, mde=None) -> Contrast:
-    """Return a difference with this interval, that notable ones of 20 pp are set beside."""
+    """Return a difference with this interval, and a notable size of 20 pp."""
     draws = np.empty(0) if interval is None else np.repeat(interval, 50)
-    made = Contrast(value, "pp", n_scenes, draws=draws, test=test, notable=20.0)
-    vars(made)["least"] = mde  # in the place of what it would work out
-    return made
+    return WithLeast(value, "pp", n_scenes, draws=draws, test=test, notable=20.0, mde=mde)
 
 
 def found(interval: Interval, p_value: float | None = None, mde: float | None = 8.0) -> Contrast:
@@ -146,7 +159,7 @@ def effect(n: int, wins: int, losses: int) -> Contrast:
     """Return the tested difference of one seed with so many scenes won and lost."""
     scene = np.arange(n)
     variants = scene < wins, (scene >= wins) & (scene < wins + losses)
-    return with_test(success_effect(*variants, Resamples.draw("turn", n, n_resamples=10)))
+    return with_test(success_effect(*variants, test="conditional"))
 
 
 N = 40
@@ -175,8 +188,8 @@ def mean(values: list[float]) -> Contrast:
 
 def test_the_least_detectable_effect_is_that_of_the_resamples() -> None:
     one = mean([0.1, 0.3, 0.7, 0.2, 0.9, 0.4, 0.6, 0.8])
-    assert one.least == pytest.approx(2.80 * one.draws.std(), rel=1e-3)
-    assert mean([0.1] * 10).least is None
+    assert least_detectable(one) == pytest.approx(2.80 * one.draws.std(), rel=1e-3)
+    assert least_detectable(mean([0.1] * 10)) is None
     gone = weighted_sum([0.1, 0.2, -0.3], [one, one, one])  # effects that cancel leave nothing
     assert gone.value == 0
     assert not gone.draws.any()
@@ -186,10 +199,23 @@ def test_the_least_detectable_change_is_that_of_the_interval_that_decides():
     """The bootstrap of 25 equal scenes has no spread, and its change no detectable size."""
     drawn = Resamples.draw("claims", 25)
     variants = np.ones((25, 1), dtype=bool)
-    found = decisive(
-        change(success_effect(variants, variants, drawn), success_effect(variants, variants, drawn))
-    )
+    effect = success_effect(variants, variants, drawn, test="conditional")
+    found = decisive(change(effect, effect))
     assert found.interval is not None
     low, high = found.interval
-    assert found.least == pytest.approx(2.8015852 * (high - low) / (2 * 1.959964), rel=1e-5)
-    assert found.least > high
+    least = least_detectable(found)
+    assert least == pytest.approx(2.8015852 * (high - low) / (2 * 1.959964), rel=1e-5)
+    assert least > high
+
+
+def test_the_percentile_interval_takes_the_place_of_the_score_interval():
+    drawn = Resamples.draw("claims", 40, n_resamples=500)
+    first, second = np.arange(40) < 12, np.arange(40) < 5
+    effect = with_test(success_effect(first, second, drawn, test="conditional"))
+    as_draws = resampled(effect)
+    assert as_draws.interval == percentile_interval(effect.draws) != effect.interval
+    for name in ("value", "test", "won"):
+        assert getattr(as_draws, name) == getattr(effect, name)
+    assert as_draws.estimate().method == "percentile bootstrap of scenes, 500 resamples"
+    metres = mean_effect(first, second, drawn, "m")
+    assert resampled(metres) is metres

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import torch
-from faultpath_quadrotor.scenes.library import Library, as_text
+from faultpath_quadrotor.scenes.library import SceneLibrary, as_text
 from faultpath_quadrotor.scenes.scene import ArenaBounds, Box, Cylinder, Scene, Topology
 from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.training.recorded import FlightData, Flights
@@ -179,5 +179,5 @@ def hall(
 def with_halls(system: Quadrotor, folder: Path, *scenes: Scene) -> tuple[str, ...]:
     """Write scenes to a library file, make them known to the system, and return their ids."""
     path = folder / "halls.json"
-    path.write_text(as_text(Library.of("halls", scenes)))
+    path.write_text(as_text(SceneLibrary.of("halls", scenes)))
     return tuple(scene.id for scene in system.library(str(path)).scenes)

@@ -59,7 +59,7 @@ def gpu(monkeypatch: pytest.MonkeyPatch) -> Iterator[SimulatedGPU]:
 
 def _forget() -> None:
     """Empty what is kept from flight to flight."""
-    kept = (models.predictor, models.reconstruction, models.clearance_model, arrays._laid)
+    kept = (models.predictor, models.reconstruction, models.clearance_model, arrays._constant_array)
     for cached in (*kept, system._field, system._renderer):
         cached.cache_clear()
 

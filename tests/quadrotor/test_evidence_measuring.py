@@ -5,7 +5,7 @@ import pytest
 from faultpath_paper.evidence import recording
 from faultpath_paper.evidence.quantities import measure
 from faultpath_paper.evidence.table import Measurement, Recording, read_evidence, write_evidence
-from faultpath_quadrotor.scenes.library import Library, as_text
+from faultpath_quadrotor.scenes.library import SceneLibrary, as_text
 from flights import hall
 
 from faultpath.core.errors import UserError
@@ -16,7 +16,7 @@ def library(tmp_path_factory) -> str:
     """Two halls to cross: flights of two to three seconds."""
     scenes = tuple(hall(i, (-4.0, i - 0.5, 1.5), (4.0, 0.0, 1.5)) for i in range(2))
     path = tmp_path_factory.mktemp("library") / "halls.json"
-    path.write_text(as_text(Library.of("halls", scenes)))
+    path.write_text(as_text(SceneLibrary.of("halls", scenes)))
     return str(path)
 
 

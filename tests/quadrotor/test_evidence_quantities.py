@@ -5,7 +5,7 @@ import pytest
 import torch
 from faultpath_paper.evidence.inputs import with_shuffled_history
 from faultpath_paper.evidence.quantities import measured
-from faultpath_paper.evidence.recording import STRIDE, Recorded
+from faultpath_paper.evidence.recording import STRIDE, RecordedWindows
 from faultpath_paper.evidence.table import Measurement, Recording
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.training.flight import fly
@@ -21,12 +21,12 @@ AT_RECONSTRUCTION, AT_PREDICTOR = f"{SHARED}@reconstruction", f"{SHARED}@predict
 
 
 @pytest.fixture(scope="module")
-def recorded() -> Recorded:
+def recorded() -> RecordedWindows:
     """Windows of four windy collection flights in place of closed-loop ones."""
     flown = in_memory(fly("wind", range(4), 0))
     place = places(flown, STRIDE)
     scenes = tuple(f"scene/{episode}" for episode in place[:, 0])
-    return Recorded(cut(flown, STRIDE), scenes, place[:, 2] + HISTORY)
+    return RecordedWindows(cut(flown, STRIDE), scenes, place[:, 2] + HISTORY)
 
 
 def ask(recorded, quantity, subject, *faults) -> np.ndarray:
@@ -120,7 +120,7 @@ def test_true_wind_and_correct_calibration_leave_no_acceleration_error(recorded)
 def test_a_window_s_number_does_not_depend_on_those_beside_it(recorded, quantity, subject, fault):
     order = torch.arange(len(recorded.windows)).flip(0)[:37]
     scenes = tuple(recorded.scenes[i] for i in order)
-    some = Recorded(recorded.windows.take(order), scenes, recorded.steps[order.numpy()])
+    some = RecordedWindows(recorded.windows.take(order), scenes, recorded.steps[order.numpy()])
     whole = ask(recorded, quantity, subject, fault)
     assert np.array_equal(ask(some, quantity, subject, fault), whole[order.numpy()])
 

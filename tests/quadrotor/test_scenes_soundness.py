@@ -6,7 +6,13 @@ from typing import Any
 
 import pytest
 from faultpath_quadrotor.scenes.geometry import Geometry
-from faultpath_quadrotor.scenes.library import FROZEN, Library, as_text, frozen_file, load_library
+from faultpath_quadrotor.scenes.library import (
+    FROZEN,
+    SceneLibrary,
+    as_text,
+    frozen_file,
+    load_library,
+)
 from faultpath_quadrotor.scenes.scene import ArenaBounds, Box, Cylinder, Scene
 from faultpath_quadrotor.scenes.soundness import MOST_OBSTACLES, clearance_m, unsound
 from flights import spread
@@ -20,13 +26,13 @@ def renamed(scene: Scene, index: int, name: str = "mine") -> Scene:
     return scene.model_copy(update={"library": name, "index": index, "id": f"{name}/{index:03d}"})
 
 
-def mine(**changed: object) -> Library:
+def mine(**changed: object) -> SceneLibrary:
     """Return two sound scenes, the second with some fields changed."""
     scenes = (renamed(BASE[0], 0), renamed(BASE[1], 1).model_copy(update=changed))
-    return Library.of("mine", scenes)
+    return SceneLibrary.of("mine", scenes)
 
 
-def refused(path: Path, library: Library) -> str:
+def refused(path: Path, library: SceneLibrary) -> str:
     file = path / "mine.json"
     file.write_text(as_text(library), encoding="utf-8")
     with pytest.raises(UserError, match=r"\A.*mine\.json.*\Z") as told:
@@ -92,12 +98,12 @@ def test_a_scene_that_cannot_be_flown_is_refused(tmp_path, changed, says):
 @pytest.mark.parametrize("name", ["", "../up", "-x", "a" * 65, "a\x1b[2J"])
 def test_a_name_that_is_none_is_refused(tmp_path: Path, name: str) -> None:
     scenes = tuple(renamed(scene, index, name) for index, scene in enumerate(BASE[:2]))
-    assert "its name" in refused(tmp_path, Library.of(name, scenes))
+    assert "its name" in refused(tmp_path, SceneLibrary.of(name, scenes))
 
 
 def test_reserved_names_are_refused_unless_they_are_the_packages_own(tmp_path: Path) -> None:
     scenes = tuple(renamed(scene, index, "held-out") for index, scene in enumerate(BASE[:2]))
-    assert "belongs to the package" in refused(tmp_path, Library.of("held-out", scenes))
+    assert "belongs to the package" in refused(tmp_path, SceneLibrary.of("held-out", scenes))
     copy = tmp_path / "copy.json"
     copy.write_text(frozen_file("selection").read_text("utf-8"), encoding="utf-8")
     assert load_library(copy) == load_library("selection")

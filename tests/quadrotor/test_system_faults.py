@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from flights import HELD_OUT, STEPS, bits, fault, fly, quadrotor, trace
 
-from faultpath.loop import Receipts
+from faultpath.loop import DeliveryLog
 from faultpath.system import Outcome
 
 READERS = ("predictor.dynamics", "predictor.trim", "reconstruction.nominal_model")
@@ -19,8 +19,8 @@ def plain(short) -> Outcome:
     return fly(quadrotor(wind="L2"))[0][0]
 
 
-def _altered(receipts: Receipts) -> set[tuple[str, str]]:
-    return {(tap.channel, tap.reader) for tap in receipts.taps if tap.steps_altered.any()}
+def _altered(log: DeliveryLog) -> set[tuple[str, str]]:
+    return {(tap.channel, tap.reader) for tap in log.taps if tap.steps_altered.any()}
 
 
 @pytest.mark.parametrize("identity", ["scale=1", "noise=0", "delay=0", "dropout=0"])
@@ -31,15 +31,15 @@ def test_an_identity_on_every_channel_is_no_fault_to_the_bit(identity, plain):
     faults = [part for name in channels for part in fault(f"{name}:{identity}", system)]
     (faulted,), taps = fly(system, faults=faults)
     assert bits(faulted) == bits(plain)
-    receipts = taps.receipts()
-    assert _altered(receipts) == set()
-    assert all(tap.steps_faulted.all() for tap in receipts.taps)
+    log = taps.delivery_log()
+    assert _altered(log) == set()
+    assert all(tap.steps_faulted.all() for tap in log.taps)
 
 
 def test_calibration_strikes_mass_and_thrust_scale_everywhere_and_nothing_else():
     system = quadrotor(wind="L2")
     _, taps = fly(system, scenes=HELD_OUT[:2], faults=fault("calibration=-0.2", system))
-    assert _altered(taps.receipts()) == set(ALTERED_BY_CALIBRATION)
+    assert _altered(taps.delivery_log()) == set(ALTERED_BY_CALIBRATION)
     for (channel, reader), deliveries in taps.log.items():
         sign = ALTERED_BY_CALIBRATION.get((channel, reader), 0)
         for reading, value in deliveries:
@@ -49,10 +49,10 @@ def test_calibration_strikes_mass_and_thrust_scale_everywhere_and_nothing_else()
 def test_a_fault_at_the_observer_leaves_the_inputs_of_the_predictor_clean(plain):
     system = quadrotor(wind="L2")
     (faulted,), taps = fly(system, faults=fault("calibration=0.2@reconstruction", system))
-    receipts = taps.receipts()
+    log = taps.delivery_log()
     observer = {key for key in ALTERED_BY_CALIBRATION if key[1].startswith("reconstruction.")}
-    assert _altered(receipts) == observer
-    assert all(receipts.at(*key).steps_altered[0] == STEPS for key in observer)
+    assert _altered(log) == observer
+    assert all(log.at(*key).steps_altered[0] == STEPS for key in observer)
     # The observer starts at zero wind whatever its calibration says: the fault needs a step.
     assert np.array_equal(trace(faulted)[1], trace(plain)[1])
     assert not np.array_equal(trace(faulted)[3:], trace(plain)[3:])
@@ -84,6 +84,6 @@ def test_a_fault_of_any_channel_flies_and_tells(text, plain):
     assert np.isfinite([*ends, *trace(faulted).flat]).all()
     assert bits(faulted)[-1] != bits(plain)[-1]
     named = {(part.channel, reader) for part in faults for reader in part.readers}
-    assert set() < _altered(taps.receipts()) <= named
+    assert set() < _altered(taps.delivery_log()) <= named
     for hashes in ("initial_hash", "disturbance_hash", "planner_noise_hash"):
         assert getattr(faulted, hashes) == getattr(plain, hashes)

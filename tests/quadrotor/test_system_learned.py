@@ -45,8 +45,8 @@ def test_calibration_errors_reach_the_predictor_s_history_but_not_the_hover_befo
     """Whatever calibration is believed: the command of the past is not the one it would give."""
     system = quadrotor(**LEARNED)
     _, taps = fly(system, "gru", faults=fault("calibration=0.1@predictor", system))
-    receipts = taps.receipts().taps
-    places = {t.reader for t in receipts if t.channel == "mass" and t.steps_altered.any()}
+    taps_logged = taps.delivery_log().taps
+    places = {t.reader for t in taps_logged if t.channel == "mass" and t.steps_altered.any()}
     readers = ("dynamics", "wind_map", "trim", "normalise_thrust", "history")
     assert places == {f"predictor.{reader}" for reader in readers}
     hover = Vehicle.stack([system.scene(HELD_OUT[0]).vehicle]).hover_command().T

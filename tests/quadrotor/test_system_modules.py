@@ -39,7 +39,7 @@ def test_what_flies_reads_every_port_and_commands_late(options, variant):
     assert (len(instants), instants[-1].step) == (STEPS + 1, STEPS)
     reads = log.reads()
     assert {each.reader for each in reads} == set(system.variants[variant].readers)
-    assert all(tap.deliveries == STEPS for tap in taps.receipts().taps)
+    assert all(tap.deliveries == STEPS for tap in taps.delivery_log().taps)
     assert (system.variants[variant].privileged == set()) == (options is LEARNED)
     taught = {each.reader for each in reads if each.channel == "action"}
     late = {each.reader for each in reads if each.valid_step < each.step}

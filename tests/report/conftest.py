@@ -163,7 +163,7 @@ def _variant(name: str) -> VariantShown:
 
 
 def _faulted(*readers: str) -> tuple[FaultedTap, ...]:
-    """Return the taps of a fault on the calibration at these readers, as receipts name them."""
+    """Return the taps of a fault on the calibration at these readers, as in a delivery log."""
     return tuple(
         FaultedTap(channel=channel.name, reader=reader, faulted_steps=9, altered_steps=9)
         for channel in interface().channels

@@ -95,7 +95,7 @@ def test_a_module_that_does_not_read_the_fault_is_grey_and_says_why(one_seed: Re
     assert 'class="absent"' in fork_panel(alone)
 
 
-def test_receipts_decide_what_is_drawn_as_faulted(one_seed: ReportInput) -> None:
+def test_the_delivery_log_decides_what_is_drawn_as_faulted(one_seed: ReportInput) -> None:
     def silent(condition: Condition) -> Condition:
         taps = tuple(tap.model_copy(update={"altered_steps": 0}) for tap in condition.faulted)
         return condition.model_copy(update={"faulted": taps[:3], "baseline_faulted": ()})

@@ -105,7 +105,7 @@ def test_every_row_brings_what_its_taps_did(whole):
         deliveries.at("observed", "elsewhere")
 
 
-def test_a_shard_without_receipts_is_named_and_run_again(whole, tmp_path, monkeypatch):
+def test_a_shard_without_a_delivery_log_is_named_and_run_again(whole, tmp_path, monkeypatch):
     with monkeypatch.context() as patch:
         encode = parquet.encode
         patch.setattr(tables, "encode", lambda columns, values, notes=None: encode(columns, values))

@@ -132,7 +132,11 @@ def test_an_installed_system_counts_by_its_contents_and_what_it_uses_by_its_vers
     (place / "faultpath_yy").mkdir()  # may be edited where it lies, as `faultpath_quadrotor`
     (place / "faultpath_yy" / "__init__.py").touch()
     monkeypatch.setattr(sys, "path", [*sys.path, str(place)])
-    for name in ("_installed", "_holder", "release"):  # what is remembered for a whole process
+    for name in (
+        "_installed",
+        "_distribution",
+        "release",
+    ):  # what is remembered for a whole process
         monkeypatch.setattr(trees, name, getattr(trees, name).__wrapped__)
     code = read_code([Root("zz_mine.system")])
     assert set(code.state.files) == {"zz_mine", "faultpath_yy", "faultpath"}

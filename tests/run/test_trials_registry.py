@@ -31,7 +31,7 @@ def test_what_is_loaded_by_mistake_is_blamed_for_nothing():
         load_system(SystemSpec(name="json:loads", options={"s": "{}"}))
     with pytest.raises(ValueError, match="Expecting") as found:
         json.loads("nothing")
-    assert blame.place(found.value).startswith(os.path.relpath(__file__))
+    assert blame.location(found.value).startswith(os.path.relpath(__file__))
 
 
 @pytest.mark.parametrize("edited", ["mine.py", "parts_of_mine.py"])

@@ -19,7 +19,7 @@ from faultpath.analyses.family import TestedContrasts, decide_conditions
 from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.core.streams import generator
 from faultpath.stats.estimate import ALPHA
-from faultpath.stats.power import detectable, detected, rule_power
+from faultpath.stats.power import detectable, rule_power, significant
 from faultpath.stats.score import degrees_interval, degrees_rejects
 
 Floats = NDArray[np.float64]
@@ -114,10 +114,10 @@ def powered(seeds: int, scenes: int = 100, runs: int = 20_000) -> float:
     trials favour one variant and .6 % the other."""
     truth = Population(0.06, 0.8, seeds, 0.5)
     if seeds == 1:
-        return rule_power(scenes, truth.rate, truth.mean, graded=True)
+        return rule_power(scenes, truth.rate, truth.mean)
     stream = generator("statistics", f"power {scenes} {truth}", 0)
     counts = stream.multinomial(scenes, truth.chances(), size=runs).astype(np.float64)
-    return float(detected(truth.sizes, counts, ALPHA, graded=True).mean())
+    return float(significant(truth.sizes, counts, ALPHA).mean())
 
 
 def tables(n: int) -> Floats:
@@ -270,16 +270,16 @@ def detection(scenes: int, truth: Population, alpha: float, runs: int = 20) -> f
     shares: list[float] = []
     for _ in range(runs):
         difference = truth.outcomes(stream.random((scenes, truth.seeds + 2)))
-        least = detectable(difference, graded=True, alpha=alpha)
+        least = detectable(difference, alpha=alpha)
         if least is None:
             continue
         rate = max(truth.rate, least / 100.0)
         true = replace(truth, rate=rate, lean=min(1.0, least / 100.0 / rate))
         if truth.seeds == 1:
-            shares.append(rule_power(scenes, rate, least / 100.0, alpha, graded=True))
+            shares.append(rule_power(scenes, rate, least / 100.0, alpha))
             continue
         counts = stream.multinomial(scenes, true.chances(), size=400).astype(np.float64)
-        shares.append(float(detected(true.sizes, counts, alpha, graded=True).mean()))
+        shares.append(float(significant(true.sizes, counts, alpha).mean()))
     return float(np.mean(shares))
 
 

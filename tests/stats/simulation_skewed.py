@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from faultpath.core.streams import generator
 from faultpath.stats.estimate import ALPHA
-from faultpath.stats.power import detected
+from faultpath.stats.power import significant
 from faultpath.stats.score import degrees_interval
 
 Floats = NDArray[np.float64]
@@ -54,9 +54,9 @@ class Skewed(NamedTuple):
         counts = stream.multinomial(self.scenes, self.chances, size=runs).astype(np.float64)
         values = np.arange(-self.seeds, self.seeds + 1) / self.seeds
         counts, times = np.unique(counts, axis=0, return_counts=True)
-        significant = times * detected(values, counts, ALPHA, graded=True)
-        first = float(significant[counts @ values > 0.0].sum()) / runs
-        both = float(significant.sum()) / runs
+        found = times * significant(values, counts, ALPHA)
+        first = float(found[counts @ values > 0.0].sum()) / runs
+        both = float(found.sum()) / runs
         return both, max(first, both - first)
 
 

@@ -12,12 +12,10 @@ from faultpath.stats.betting import log_capital
 from faultpath.stats.contrast import change
 from faultpath.stats.decisions import decide_family, with_test
 from faultpath.stats.effects import success_effect
-from faultpath.stats.resamples import Resamples
 
 
 def effect(first, second):
-    resamples = Resamples.draw("betting", len(first), n_resamples=1)
-    return with_test(success_effect(first, second, resamples, sequential=True))
+    return with_test(success_effect(first, second, sequential=True))
 
 
 def variants(wins: int, losses: int, n: int):

@@ -1,5 +1,7 @@
 """Bootstrap effects: the laws that they must keep, against plain resampling, and their speed."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -10,10 +12,12 @@ from scipy.stats import t as student
 
 from faultpath.core.streams import generator
 from faultpath.stats.contrast import change, percentile_interval
-from faultpath.stats.decisions import with_test
 from faultpath.stats.effects import mean_effect, median_effect, success_effect, success_rate
 from faultpath.stats.estimate import SCENES, SCENES_AND_SEEDS, Estimate
 from faultpath.stats.resamples import Resamples
+
+conditional_effect = partial(success_effect, test="conditional")
+"""The paper's effect."""
 
 N = 20
 RESAMPLES = Resamples.draw("laws", N, n_resamples=500)
@@ -69,12 +73,12 @@ def test_draws_are_the_means_of_resampled_scenes(pair):
 @fewer
 @given(BINARY.filter(lambda pair: pair.shape[2] > 1))
 def test_newly_trained_models_have_the_hull_of_score_and_students_t(pair):
-    trained = success_effect(*pair, RESAMPLES, models=True)
-    given_ = success_effect(*pair, RESAMPLES)
+    trained = conditional_effect(*pair, RESAMPLES, models=True)
+    given_ = conditional_effect(*pair, RESAMPLES)
     assert trained.estimate().estimand == SCENES_AND_SEEDS
     assert given_.estimate().estimand == SCENES
-    moved = change(success_effect(*pair[::-1], RESAMPLES), given_)
-    other = change(success_effect(*pair[::-1], RESAMPLES, models=True), trained)
+    moved = change(conditional_effect(*pair[::-1], RESAMPLES), given_)
+    other = change(conditional_effect(*pair[::-1], RESAMPLES, models=True), trained)
     for wide, score in ((trained, given_), (other, moved)):
         low, high = score.interval
         seeds = np.array(wide.per_seed)
@@ -84,7 +88,7 @@ def test_newly_trained_models_have_the_hull_of_score_and_students_t(pair):
             assert wide.interval == pytest.approx((low, high))
         assert wide.interval[0] <= low + 1e-9
         assert high - 1e-9 <= wide.interval[1]
-    backward = success_effect(*pair[::-1], RESAMPLES, models=True)
+    backward = conditional_effect(*pair[::-1], RESAMPLES, models=True)
     low, high = trained.interval
     assert (backward.value, backward.interval) == (-trained.value, pytest.approx((-high, -low)))
 
@@ -92,8 +96,8 @@ def test_newly_trained_models_have_the_hull_of_score_and_students_t(pair):
 def test_newly_trained_models_without_discordance_are_not_known_to_be_equal():
     """Resampled trainings alone printed [0.0, 0.0]."""
     some = np.arange(60).reshape(N, 3) % 2
-    effect = success_effect(some, some, RESAMPLES, models=True)
-    assert effect.interval == success_effect(some, some, RESAMPLES).interval
+    effect = conditional_effect(some, some, RESAMPLES, models=True)
+    assert effect.interval == conditional_effect(some, some, RESAMPLES).interval
     low, high = change(effect, effect).interval
     assert low == -high < -10
 
@@ -111,27 +115,15 @@ def test_a_resampled_mean_of_zero_is_exactly_zero():
     """Thirds do not cancel in floating point; an end at 0 must not come out beside it."""
     first, second = np.zeros((2, N, 3))
     first[:7, 0], second[7:14, 1] = 1, 1
-    draws = success_effect(first, second, RESAMPLES).draws
+    draws = conditional_effect(first, second, RESAMPLES).draws
     assert (draws == 0).sum() > 20
     assert np.abs(draws[draws != 0]).min() > 1
-
-
-def test_resampled_it_has_the_percentile_interval_and_else_stays():
-    first, second = np.arange(N) < 12, np.arange(N) < 5
-    found = with_test(success_effect(first, second, RESAMPLES))
-    as_draws = found.resampled()
-    assert as_draws.interval == percentile_interval(found.draws) != found.interval
-    for name in ("value", "test", "won"):
-        assert getattr(as_draws, name) == getattr(found, name)
-    assert as_draws.estimate().method == "percentile bootstrap of scenes, 500 resamples"
-    metres = mean_effect(first, second, RESAMPLES, "m")
-    assert metres.resampled() is metres
 
 
 def test_per_seed_values_and_counts():
     first = np.array([[1, 0], [1, 0], [0, 1], [0, 0]])
     second = np.array([[0, 0], [0, 1], [0, 0], [0, 0]])
-    estimate = success_effect(first, second, Resamples.draw("four", 4)).estimate()
+    estimate = conditional_effect(first, second, Resamples.draw("four", 4)).estimate()
     assert estimate.per_seed == (50.0, 0.0)
     assert (estimate.value, estimate.won) == (25.0, ((2, 0), (1, 1)))
     assert (estimate.n_scenes, estimate.n_seeds, estimate.unit) == (4, 2, "pp")
@@ -141,7 +133,7 @@ def test_per_seed_values_and_counts():
 @fewer
 @given(BINARY, BINARY)
 def test_a_change_is_joint(a, b):
-    effect_a, effect_b = (success_effect(*pair, RESAMPLES) for pair in (a, b))
+    effect_a, effect_b = (conditional_effect(*pair, RESAMPLES) for pair in (a, b))
     moved = change(effect_a, effect_b)
     np.testing.assert_allclose(moved.draws, effect_b.draws - effect_a.draws, atol=1e-9)
     assert moved.value == pytest.approx(effect_b.value - effect_a.value, abs=1e-9)
@@ -154,23 +146,31 @@ def test_a_change_is_joint(a, b):
 
 
 ONE, THREE = np.ones((N, 2)), np.ones((N, 3))
-HERE, TRAINED = (success_effect(ONE, ONE, RESAMPLES, models=models) for models in (False, True))
-ELSEWHERE = success_effect(ONE, ONE, Resamples.draw("other", N, n_resamples=500))
+HERE, TRAINED = (conditional_effect(ONE, ONE, RESAMPLES, models=models) for models in (False, True))
+ELSEWHERE = conditional_effect(ONE, ONE, Resamples.draw("other", N, n_resamples=500))
 
 
 @pytest.mark.parametrize(
     ("wrong", "says"),
     [
         (lambda: change(HERE, ELSEWHERE), "same resamples"),
-        (lambda: change(HERE, mean_effect(ONE, ONE, RESAMPLES, "m")), "'pp' and 'm'"),
-        (lambda: change(HERE, TRAINED), "one effect speaks of new seeds"),
+        (lambda: change(HERE, success_effect(ONE, ONE)), "same resamples"),
         (
-            lambda: change(TRAINED, success_effect(THREE, THREE, RESAMPLES, models=True)),
+            lambda: change(success_effect(ONE, ONE), success_effect(ONE[1:], ONE[1:])),
+            "of 40 and of 39 scenes",
+        ),
+        (lambda: change(HERE, mean_effect(ONE, ONE, RESAMPLES, "m")), "'pp' and 'm'"),
+        (lambda: change(HERE, TRAINED), "one effect is for new seeds"),
+        (
+            lambda: change(TRAINED, conditional_effect(THREE, THREE, RESAMPLES, models=True)),
             "same seeds",
         ),
-        (lambda: success_effect(np.ones(19), np.ones(19), RESAMPLES), "19 scenes, the resamples"),
+        (
+            lambda: conditional_effect(np.ones(19), np.ones(19), RESAMPLES),
+            "19 scenes, the resamples",
+        ),
         (lambda: success_rate(np.full(N, 2.0), RESAMPLES), "only 0 and 1"),
-        (lambda: success_effect(ONE[:, 0], ONE[:, 0], RESAMPLES, models=True), "one seed"),
+        (lambda: conditional_effect(ONE[:, 0], ONE[:, 0], RESAMPLES, models=True), "one seed"),
         (lambda: mean_effect(ONE, THREE, RESAMPLES, "m"), "one shape"),
         (lambda: Resamples.draw("none", 5, n_resamples=0), "0 resamples of 5 scenes"),
         (lambda: percentile_interval(np.zeros(3), 95), "level of an interval"),

@@ -11,7 +11,6 @@ from simulation_skewed import skewed_coverage
 from faultpath.stats import unconditional
 from faultpath.stats.breakeven import break_even
 from faultpath.stats.effects import success_effect
-from faultpath.stats.resamples import Resamples
 
 ALPHA = 0.05
 
@@ -39,7 +38,6 @@ def test_two_conditions_keep_their_own_chances():
 def test_exact_coverage_is_that_of_the_intervals_themselves():
     """Every table of six scenes, through the interval that users see."""
     population = Population(0.4, 0.5)
-    resamples = Resamples.draw("six", 6, n_resamples=1)
     minus, none, plus = population.chances()
     expected = 0.0
     for second, equal, first in simulated.tables(6).astype(int):
@@ -48,7 +46,7 @@ def test_exact_coverage_is_that_of_the_intervals_themselves():
             chance /= float(np.prod(np.arange(1, count + 1)))
         scene = np.arange(6)
         variants = scene < first, (scene >= first) & (scene < first + second)
-        low, high = success_effect(*variants, resamples, graded=True).interval
+        low, high = success_effect(*variants).interval
         expected += chance * (low <= 100 * population.mean <= high)
     assert simulated.interval_coverage(6, population) == pytest.approx(expected)
 
@@ -56,13 +54,12 @@ def test_exact_coverage_is_that_of_the_intervals_themselves():
 def test_break_even_coverage_is_that_of_the_sets_themselves():
     correct, faulty = Population(0.1, -1.0), Population(0.3, 1.0)
     p, rng = 0.1 / 0.4, np.random.default_rng(1)
-    resamples = Resamples.draw("forty", 40, n_resamples=1)
     chances = simulated.joint(correct, faulty, 0.5).ravel()
     covered = 0
     for _ in range(400):
         kinds = rng.choice(9, size=40, p=chances)
         ends = [
-            success_effect(difference > 0, difference < 0, resamples, graded=True)
+            success_effect(difference > 0, difference < 0)
             for difference in (kinds // 3 - 1, kinds % 3 - 1)
         ]
         covered += any(low <= p <= high for low, high in break_even(*ends).pieces)

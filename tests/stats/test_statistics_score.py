@@ -1,5 +1,7 @@
 """The score interval: Tango's for one seed, its laws for several, and never a width of zero."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -13,6 +15,9 @@ from faultpath.stats.contrast import change
 from faultpath.stats.effects import success_effect, success_rate
 from faultpath.stats.resamples import Resamples
 from faultpath.stats.score import SceneValues, reach, rejects
+
+conditional_effect = partial(success_effect, test="conditional")
+"""The paper's effect."""
 
 Z = float(norm.ppf(0.975))
 N = 30
@@ -42,7 +47,7 @@ def test_one_seed_gives_tangos_interval(n):
     for b in range(0, n + 1, step):
         for c in range(0, n - b + 1, step):
             values = np.concatenate([np.ones(b), -np.ones(c), np.zeros(n - b - c)])
-            found = SceneValues.paired(values, 1.0).interval()
+            found = SceneValues.paired(values, 1.0, test="conditional").interval()
             assert found == pytest.approx(tango(b, c, n), abs=1e-9), (b, c)
 
 
@@ -50,12 +55,12 @@ def test_one_seed_gives_tangos_interval(n):
 def test_no_discordance_has_an_interval_with_width(n, n_seeds):
     """0 of 100 used to print [0.0, 0.0]; that no scene in n differs bounds how many may."""
     none = np.zeros((n, n_seeds))
-    found = success_effect(none, none, Resamples.draw("none", n, n_resamples=10))
+    found = conditional_effect(none, none, Resamples.draw("none", n, n_resamples=10))
     expected = 100 * Z**2 / (n + Z**2)
     assert found.value == 0.0
     assert found.interval == pytest.approx((-expected, expected))
     everything = np.concatenate([np.ones(n)])
-    whole = success_effect(everything, 0 * everything, Resamples.draw("w", n, n_resamples=10))
+    whole = conditional_effect(everything, 0 * everything, Resamples.draw("w", n, n_resamples=10))
     assert whole.estimate().high == 100.0
     assert whole.estimate().low == pytest.approx(100 - 2 * expected)
 
@@ -64,7 +69,7 @@ def test_no_discordance_has_an_interval_with_width(n, n_seeds):
 @given(VERSIONS, st.sampled_from([0.5, 0.95, 0.999]))
 def test_the_interval_holds_exactly_the_means_that_the_test_does_not_reject(variants, level):
     values = (variants[0].astype(float) - variants[1]).mean(axis=1)
-    scenes = SceneValues.paired(values, 1.0)
+    scenes = SceneValues.paired(values, 1.0, test="conditional")
     low, high = scenes.interval(level)
     assert -1 <= low < high <= 1
     assert low <= values.mean() <= high
@@ -90,7 +95,7 @@ def test_what_was_not_seen_is_assumed_larger_than_what_was():
 
 def test_a_change_is_bounded_by_the_sum_of_both_bounds():
     none = np.zeros(N)
-    one = success_effect(none, none, RESAMPLES)
+    one = conditional_effect(none, none, RESAMPLES)
     both = change(one, one)
     assert both.scenes.far == 2.0
     assert both.interval[1] == pytest.approx(2 * one.interval[1])

@@ -18,13 +18,11 @@ from faultpath.stats.contrast import change
 from faultpath.stats.decisions import with_test
 from faultpath.stats.distributions import sign_p_value
 from faultpath.stats.effects import success_effect
-from faultpath.stats.power import detected, rule_power
-from faultpath.stats.resamples import Resamples
+from faultpath.stats.power import rule_power, significant
 from faultpath.stats.score import reach, rejects
 
 PAIR = hnp.arrays(np.bool_, st.tuples(st.just(2), st.integers(1, 30), st.integers(1, 4)))
 N = 40
-RESAMPLES = Resamples.draw("degrees", N, n_resamples=1)
 VARIANTS = hnp.arrays(np.bool_, st.tuples(st.just(2), st.just(N), st.integers(1, 5)))
 laws = settings(max_examples=80, deadline=None)
 
@@ -40,10 +38,9 @@ def test_p_values_are_the_exact_fractions_of_every_table_up_to_60_discordant_pai
             assert p_value == pytest.approx(float(exact), rel=1e-12)
 
 
-def found(first, second, graded=False):
+def found(first, second, test="unconditional"):
     """Return the tested contrast of two binary variants."""
-    resamples = Resamples.draw("t", max(1, len(first)), n_resamples=1)
-    return with_test(success_effect(first, second, resamples, graded=graded))
+    return with_test(success_effect(first, second, test=test))
 
 
 @settings(deadline=None)
@@ -51,8 +48,10 @@ def found(first, second, graded=False):
 def test_one_seed_is_tested_by_exact_mcnemar(pair):
     one = pair[:, :, 0]
     table = [[0, int((one[0] & ~one[1]).sum())], [int((one[1] & ~one[0]).sum()), 0]]
-    assert found(*one).test.name == "exact McNemar"
-    assert found(*one).test.p_value == pytest.approx(mcnemar(table, exact=True).pvalue, abs=1e-12)
+    assert found(*one, "conditional").test.name == "exact McNemar"
+    assert found(*one, "conditional").test.p_value == pytest.approx(
+        mcnemar(table, exact=True).pvalue, abs=1e-12
+    )
 
 
 @pytest.mark.parametrize(
@@ -71,26 +70,24 @@ def test_wrong_input_is_refused(first, second, message):
         found(first, second)
 
 
-@pytest.mark.parametrize("graded", [False, True])
+@pytest.mark.parametrize("test", ["conditional", "unconditional"])
 @settings(max_examples=60, deadline=None)
 @given(PAIR, st.integers(2, 4), st.randoms(use_true_random=False))
 def test_swapped_variants_mirror_to_the_bit_and_copies_and_orders_change_nothing(
-    graded, pair, times, random
+    test, pair, times, random
 ):
-    once, mirrored, same = (
-        found(*variants, graded) for variants in (pair, pair[::-1], pair[[0, 0]])
-    )
+    once, mirrored, same = (found(*variants, test) for variants in (pair, pair[::-1], pair[[0, 0]]))
     low, high = once.interval
     assert (mirrored.value, mirrored.interval) == (-once.value, (-high, -low))
     assert (mirrored.test.p_value, mirrored.test.leans) == (once.test.p_value, -once.test.leans)
     assert [(lost, won) for won, lost in mirrored.won] == [*once.won]
     assert (same.test.p_value, same.test.leans) == (1.0, 0)
 
-    copied = found(*np.tile(pair, (1, 1, times)), graded)
+    copied = found(*np.tile(pair, (1, 1, times)), test)
     assert (copied.value, copied.interval) == (once.value, once.interval)
     assert copied.test.p_value == once.test.p_value
     scenes, seeds = (random.sample(range(size), size) for size in pair.shape[1:])
-    moved = found(*pair[:, scenes][:, :, seeds], graded)
+    moved = found(*pair[:, scenes][:, :, seeds], test)
     assert (moved.test, moved.interval) == (once.test, once.interval)
 
 
@@ -116,22 +113,22 @@ def test_power_takes_the_test_that_decides(alpha):
         sums = rng.choice(np.arange(-3, 4), p=chances, size=40)
         wins = np.arange(3) < np.maximum(sums, 0)[:, np.newaxis]
         losses = np.arange(3) < np.maximum(-sums, 0)[:, np.newaxis]
-        effect = found(wins, losses, graded=True)
+        effect = found(wins, losses)
         counts = np.array([[(sums == size).sum() for size in range(-3, 4)]], dtype=float)
         expected = effect.test.p_value <= alpha and effect.sign_of_interval != 0
-        assert detected(values, counts, alpha, graded=True)[0] == expected
+        assert significant(values, counts, alpha)[0] == expected
 
 
 def power(scenes, population, runs=6000):
     counts = np.random.default_rng(1).multinomial(scenes, population.chances(), size=runs) * 1.0
-    return detected(population.sizes, counts, 0.05, graded=True).mean()
+    return significant(population.sizes, counts, 0.05).mean()
 
 
 @pytest.mark.parametrize("alike", [0.5, 0.97, 0.99])
 @pytest.mark.parametrize(("scenes", "rate", "lean"), [(100, 0.1, 0.6), (50, 0.1, 1.0)])
 def test_more_seeds_lose_no_power(scenes, rate, lean, alike):
     """Three nearly equal seeds found .38 where the first alone finds .47."""
-    alone = rule_power(scenes, rate, rate * lean, graded=True)
+    alone = rule_power(scenes, rate, rate * lean)
     assert power(scenes, Population(rate, lean, 3, alike)) > alone - 0.03
 
 
@@ -144,7 +141,7 @@ def test_in_skewed_populations_the_level_is_kept():
 @laws
 @given(VARIANTS)
 def test_interval_and_test_agree(variants):
-    effect = found(*variants, graded=True)
+    effect = found(*variants)
     low, high = effect.interval
     assert effect.test.rejects() == (effect.sign_of_interval != 0)
     assert low <= effect.value <= high
@@ -156,9 +153,9 @@ def test_of_scenes_that_differ_wholly_it_is_e_plus_m(first, second, seeds):
     scene = np.arange(N)[:, None] + np.zeros(seeds)
     variants = scene < first, (scene >= first) & (scene < first + second)
     alone = unconditional.p_value(first, second, N)
-    values, counts = found(*variants, graded=True).scenes.kinds()
+    values, counts = found(*variants).scenes.kinds()
     tango = score.p_value(values, counts, 1.0) if first != second else 1.0
-    assert found(*variants, graded=True).test.p_value == pytest.approx(max(alone, tango), rel=1e-9)
+    assert found(*variants).test.p_value == pytest.approx(max(alone, tango), rel=1e-9)
 
 
 @laws
@@ -166,7 +163,7 @@ def test_of_scenes_that_differ_wholly_it_is_e_plus_m(first, second, seeds):
 def test_power_and_changes_take_the_same_test(one, two):
     seeds = min(one.shape[2], two.shape[2])
     variants = (one[..., :seeds], two[..., :seeds])
-    pair = [success_effect(*pair, RESAMPLES, graded=True) for pair in variants]
+    pair = [success_effect(*pair) for pair in variants]
     moved = with_test(change(*pair))
     assert moved.test.rejects() == (moved.sign_of_interval != 0)
     values = np.arange(-2 * seeds, 2 * seeds + 1) / seeds

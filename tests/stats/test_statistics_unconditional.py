@@ -15,7 +15,6 @@ from faultpath.stats.effects import success_effect
 from faultpath.stats.many_pairs import ManyPairs
 from faultpath.stats.null_law import NullLaw, bounds
 from faultpath.stats.power import rule_power
-from faultpath.stats.resamples import Resamples
 from faultpath.stats.score import quantile, rejects
 
 
@@ -69,7 +68,7 @@ def test_of_a_hundred_pairs_it_agrees_with_tangos_interval_nearly_everywhere():
     levels = [chances(100, share)[em].sum() for share in np.linspace(0.0, 1.0, 51)]
     assert 0.049 < max(levels) < 0.0498
     # 5 % of pairs discordant, all of them on one side: the power of test and interval together.
-    power = [rule_power(100, 0.05, 0.05, graded=graded) for graded in (False, True)]
+    power = [rule_power(100, 0.05, 0.05, test=test) for test in ("conditional", "unconditional")]
     assert power == pytest.approx([0.38, 0.74], abs=5e-3)
 
 
@@ -122,8 +121,7 @@ def test_hundred_thousand_pairs_take_no_table_of_their_square():
 def test_the_name_says_where_e_is_approximated(n, named):
     first = np.zeros((n, 1))
     first[:40] = 1
-    resamples = Resamples.draw("em", n, n_resamples=1)
-    assert with_test(success_effect(first, 0 * first, resamples, graded=True)).test.name == named
+    assert with_test(success_effect(first, 0 * first)).test.name == named
 
 
 def test_more_of_the_same_side_has_a_smaller_p_and_very_many_pairs_do_not_underflow():
@@ -135,10 +133,9 @@ def test_more_of_the_same_side_has_a_smaller_p_and_very_many_pairs_do_not_underf
 def test_the_rule_chooses_the_test_of_one_seed():
     first = np.zeros((100, 1))
     first[:5] = 1
-    resamples = Resamples.draw("em", 100, n_resamples=1)
     exact, em = (
-        with_test(success_effect(first, 0 * first, resamples, graded=graded)).test
-        for graded in (False, True)
+        with_test(success_effect(first, 0 * first, test=test)).test
+        for test in ("conditional", "unconditional")
     )
     assert (exact.p_value, exact.leans) == (0.0625, 1)
     assert (round(em.p_value, 3), em.leans) == (0.023, 1)

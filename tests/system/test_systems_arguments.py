@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from faultpath.core.error_source import place
+from faultpath.core.error_source import location
 from faultpath.core.errors import SystemMistake
 from faultpath.run import SystemSpec, load_system
 from faultpath.system import library_of
@@ -74,7 +74,7 @@ def own(tmp_path):
 def test_a_wrong_argument_is_told_with_its_line_and_what_to_give(own, before, after, said) -> None:
     with pytest.raises(SystemMistake, match=said) as mistake:
         own(before, after)
-    assert "own.py, line " in place(mistake.value)
+    assert "own.py, line " in location(mistake.value)
 
 
 def test_seeds_may_be_an_array(own) -> None:

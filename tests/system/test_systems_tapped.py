@@ -188,7 +188,7 @@ def attempted(module, fault):
     return attempt(made, Treatment(variant="only", faults=faults), ("seed/1", "seed/2"))
 
 
-def test_receipts_count_what_was_read_and_a_fault_after_a_write_is_not_delivered():
+def test_delivery_logs_count_what_was_read_and_a_fault_after_a_write_is_not_delivered():
     taps = {tap.reader: tap for tap in attempted(drive(0.1), "flux:scale=3").taps}
     assert taps["observer.flux"].deliveries == 2
     assert taps["control.flux"].deliveries == taps["control.flux"].faulted_steps == 2 * 10

@@ -10,10 +10,11 @@ from faultpath.report.tables import MISSING, Entry
 from faultpath.stats.contrast import Contrast
 from faultpath.system import Status
 from faultpath_paper.cells import Cell, of_seed
+from faultpath_paper.detection import detection, least_detectable, resampled
 from faultpath_paper.evidence.table import Measurement
 from faultpath_paper.quantities.differences import contrast
 from faultpath_paper.quantities.windows import mean_of_medians
-from faultpath_paper.results import NotRun, Quantity, Results, Undecidable, detection
+from faultpath_paper.results import NotRun, Quantity, Results, Undecidable
 
 Made = Sequence[Entry | str]
 Figure = float | str
@@ -117,7 +118,7 @@ def of_quantity(
 
     def make(results: Results) -> Made:
         effect = quantity(results)
-        as_paper = effect.resampled()
+        as_paper = resampled(effect)
         bold = effect.unit == "pp" and bool(detection(as_paper))
         entry = Entry(text=wording.signed(effect.value, digits), detected=bold)
         return entry, interval_of(as_paper, digits), interval_of(effect, digits)
@@ -160,12 +161,13 @@ def difference(first: Cell, second: Cell, published: PublishedContrast) -> Entry
     def make(results: Results) -> Made:
         effect = contrast(results, first, second)
         assert effect.test is not None
+        least = least_detectable(effect)
         return (
             decided(effect),
-            *map(interval_of, (effect.resampled(), effect)),
+            *map(interval_of, (resampled(effect), effect)),
             wording.won(effect.won or ()),
             wording.p_value(effect.test.p_value),
-            "none" if effect.least is None else wording.plain(effect.least),
+            "none" if least is None else wording.plain(least),
         )
 
     return EntryGroup(make, astuple(published), (first, second))
@@ -173,5 +175,5 @@ def difference(first: Cell, second: Cell, published: PublishedContrast) -> Entry
 
 def decided(effect: Contrast) -> Entry:
     """Return a difference, bold where it is detected."""
-    bold = bool(detection(effect.resampled()))
+    bold = bool(detection(resampled(effect)))
     return Entry(text=wording.signed(effect.value), detected=bold)

@@ -9,10 +9,11 @@ import numpy as np
 from faultpath.run import PairingRefused, Pairs, Trials, pair
 from faultpath.stats.contrast import Contrast
 from faultpath.stats.effects import success_rate
-from faultpath.stats.estimate import Estimate, Sign
+from faultpath.stats.estimate import Estimate
 from faultpath.stats.resamples import Resamples
 from faultpath.system import Outcome, Status
 from faultpath_paper.cells import Cell
+from faultpath_paper.detection import enough
 from faultpath_paper.evidence.table import EvidenceTable, Measured, Measurement
 
 
@@ -116,21 +117,11 @@ Quantity = Callable[[Results], Contrast]
 """Computes a number from a run, for tables and claims; raises `NotRun` or `Undecidable`."""
 
 
-def detection(contrast: Contrast) -> Sign:
-    """Return the side of 0 on which the paper detects a difference, or 0.
-
-    The whole interval lies there, of one seed's success with exact McNemar on its side.
-    """
-    if contrast.n_seeds == 1:
-        return contrast.detected
-    return contrast.sign_of_interval if contrast.enough else 0
-
-
 def decisive(contrast: Contrast, notable: float | None = None) -> Contrast:
     """Return a contrast without its interval where too few scenes give it.
 
     `notable` as in `Contrast`.
     """
-    if contrast.enough:
+    if enough(contrast):
         return replace(contrast, notable=notable)
     return replace(contrast, notable=notable, draws=np.empty(0), scenes=None)

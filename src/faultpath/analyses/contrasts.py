@@ -11,7 +11,6 @@ from faultpath.stats.contrast import Contrast, change
 from faultpath.stats.decisions import with_test
 from faultpath.stats.effects import success_effect
 from faultpath.stats.inputs import Floats
-from faultpath.stats.resamples import Resamples
 
 
 @dataclass(frozen=True)
@@ -29,17 +28,7 @@ class Design:
 
     def untested(self, repair: Floats, baseline: Floats) -> Contrast:
         """Return the same without its test, which takes long where scenes are many."""
-        # Nothing rests on resamples where outcomes are yes or no.
-        scenes = int(paired_scenes(repair, baseline).sum())
-        resamples = Resamples.draw("family", scenes, n_resamples=1)
-        return success_effect(
-            repair,
-            baseline,
-            resamples,
-            models=self.models,
-            sequential=self.sequential,
-            graded=True,
-        )
+        return success_effect(repair, baseline, models=self.models, sequential=self.sequential)
 
     def together(self, one: Outcomes, two: Outcomes) -> tuple[Contrast, Contrast] | None:
         """Return the effects under two conditions over the scenes, and for newly trained models the

@@ -113,7 +113,7 @@ def _effect(
     # that stops where it has decided.
     level, least = effect.test.critical_p, None
     if level and question.generalise != "models" and facts.order is None:
-        least = detectable(effect.pairs, graded=True, alpha=level, on_top=True)
+        least = detectable(effect.pairs, alpha=level, on_top=True)
     return Effect(
         condition=condition,
         **_difference(effect),

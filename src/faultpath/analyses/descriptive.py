@@ -10,10 +10,10 @@ from faultpath.analyses.facts import ComparisonFacts, Question
 from faultpath.analyses.model import CORRECT, Condition, VariantCounts
 from faultpath.run.pairing import Pairs
 from faultpath.run.trials import Bools, Trials
-from faultpath.stats.contrast import MIN_SCENES
 from faultpath.stats.effects import mean_effect, median_effect, seed_sums, success_effect
 from faultpath.stats.estimate import Estimate
 from faultpath.stats.inputs import Floats
+from faultpath.stats.power import MIN_SCENES
 from faultpath.stats.resamples import Resamples
 from faultpath.system.outcome import Metric, Status
 
@@ -102,7 +102,7 @@ def secondary(
             means = float(old.mean()), float(new.mean())
             crashed = [ended[full] for ended in pairs.ended(Status.CRASH)]
             thresholds = [
-                _at_threshold(at, metric, (new, old), crashed, drawn, facts)
+                _at_threshold(at, metric, (new, old), crashed, facts)
                 for at in sorted(set(question.thresholds))
             ]
     return Secondary(
@@ -139,7 +139,6 @@ def _at_threshold(
     of: Metric,
     values: Sequence[Floats],
     crashed: Sequence[Bools],
-    resamples: Resamples,
     facts: ComparisonFacts,
 ) -> AtThreshold:
     less = of.better == "less"
@@ -148,7 +147,7 @@ def _at_threshold(
         for metric, crash in zip(values, crashed, strict=True)
     )
     sequential = facts.order is not None
-    difference = success_effect(new, old, resamples, sequential=sequential, graded=True)
+    difference = success_effect(new, old, sequential=sequential)
     return AtThreshold(
         threshold=threshold,
         baseline_percent=percent(old.astype(np.float64)),

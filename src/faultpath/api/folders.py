@@ -147,7 +147,7 @@ def _other_effects(record: AuditResult) -> Iterator[str]:
 
 
 def _other_taps(record: AuditResult, interface: Interface, deliveries: Deliveries) -> Iterator[str]:
-    """Yield where the record names other faulted taps than interface and receipts."""
+    """Yield where the record names other faulted taps than interface and delivery log."""
     question = record.question
     taps = {(c.name, reader) for c in interface.channels for reader in c.readers}
     for condition in record.conditions:

@@ -46,9 +46,9 @@ def main() -> NoReturn:
     try:
         status = _run(arguments)
     except BaseException as error:
-        from faultpath.core.error_source import place
+        from faultpath.core.error_source import location
 
-        theirs = bool(place(error))  # a system may raise what would mean something of ours
+        theirs = bool(location(error))  # a system may raise what would mean something of ours
         # Whoever reads our output has seen enough; rich ends the program at that.
         if BrokenPipeError in (type(error), type(error.__context__)) and not theirs:
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -105,7 +105,7 @@ def _run(arguments: list[str]) -> int:
 
     from faultpath.cli.app import build
     from faultpath.cli.options import as_written, check_arguments
-    from faultpath.core.error_source import place
+    from faultpath.core.error_source import location
 
     check_arguments(arguments)
     command = typer.main.get_command(build(arguments))
@@ -114,7 +114,7 @@ def _run(arguments: list[str]) -> int:
         with command.make_context("faultpath", arguments) as context:
             status = context.command.invoke(context)
     except typer.Exit as end:
-        if place(end):
+        if location(end):
             raise
         status = end.exit_code
     return status if isinstance(status, int) else 0

@@ -1,1 +1,1 @@
-"""The ground of all rooms: errors and whose they are, arrays, streams, readers of files."""
+"""What all rooms use: errors and their sources, arrays, random streams, readers of files."""

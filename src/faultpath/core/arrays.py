@@ -18,10 +18,10 @@ HostArray: TypeAlias = NDArray[Any]
 """A NumPy array."""
 
 Constant: TypeAlias = float | tuple[float, ...] | tuple[tuple[float, ...], ...]
-"""A number, or numbers laid along the last axes of a reading."""
+"""A number, or numbers along the last axes of a reading."""
 
 _COMPAT = cast(Any, array_api_compat)
-"""Its annotations name array libraries that are not installed."""
+"""Untyped, because its annotations name array libraries that may not be installed."""
 
 _is_torch: Any = _COMPAT.is_torch_array
 _NAMESPACES: dict[type, Any] = {}
@@ -50,9 +50,9 @@ def device_kind(array: Array) -> str:
 
 
 def read_only(array: Array) -> Array:
-    """Return a NumPy array as a view that nobody can write to, and any other array as it is.
+    """Return a read-only view of a NumPy array, and any other array as it is.
 
-    The array itself stays as writeable as it was: its owner may go on using it.
+    The array itself stays writeable, because its owner may go on using it.
     """
     if not isinstance(array, np.ndarray):
         return array
@@ -65,14 +65,14 @@ def read_only(array: Array) -> Array:
 
 
 def copy(array: Array) -> Array:
-    """Return a copy that no later write to `array` can reach."""
+    """Return an independent copy."""
     if type(array) is np.ndarray:
         return np.array(array)
     return namespace(array).asarray(array, copy=True)
 
 
-def place(host: HostArray, reading: Array, dtype: Any = None) -> Array:
-    """Return `host` in the namespace and on the device of `reading`, as `dtype` where one is given.
+def match_device(host: HostArray, reading: Array, dtype: Any = None) -> Array:
+    """Return `host` in the namespace and on the device of `reading`, as `dtype` if given.
 
     On an accelerator the copy is queued, so the host does not wait for the device.
     """
@@ -82,7 +82,7 @@ def place(host: HostArray, reading: Array, dtype: Any = None) -> Array:
 
 
 _PINNING = {"cuda"}
-"""Devices that copy by themselves from pinned memory only; from any other the host may wait."""
+"""Devices whose copies are asynchronous only from pinned memory."""
 
 
 def _moved(array: Array, device: Any) -> Array:
@@ -95,19 +95,19 @@ def _moved(array: Array, device: Any) -> Array:
 
 def like(host: HostArray, reading: Array) -> Array:
     """Return `host` in the namespace, on the device and with the dtype of `reading`."""
-    return place(host, reading, reading.dtype)
+    return match_device(host, reading, reading.dtype)
 
 
 @lru_cache(maxsize=1024)
-def _laid(value: Any, xp: Any, dtype: Any, device: Any) -> Array:
+def _constant_array(value: Any, xp: Any, dtype: Any, device: Any) -> Array:
     return _moved(xp.asarray(value, dtype=dtype), device)
 
 
 def constant(value: Constant, reading: Array) -> Any:
-    """Return `value` ready to combine with `reading`; numbers in a tuple cross over only once."""
+    """Return `value` ready to combine with `reading`; a tuple is copied to the device only once."""
     if not isinstance(value, tuple):
         return value
-    return _laid(value, namespace(reading), reading.dtype, _COMPAT.device(reading))
+    return _constant_array(value, namespace(reading), reading.dtype, _COMPAT.device(reading))
 
 
 def filled(value: Constant, reading: Array) -> Array:
@@ -153,7 +153,7 @@ def is_zero(value: Constant) -> bool:
 
 
 def misfit(name: str, value: Constant, shape: tuple[int, ...]) -> str | None:
-    """Return what is wrong with laying `value` on one scene's reading of `shape`, or `None`."""
+    """Return why `value` does not fit one scene's reading of `shape`; `None` if it does."""
     own = np.shape(np.asarray(value, dtype=np.float64))
     if not own or (len(own) <= len(shape) and shape[len(shape) - len(own) :] == own):
         return None
@@ -170,8 +170,10 @@ def to_numpy(array: Any) -> HostArray:
 
 
 def row_bytes(array: Array) -> NDArray[np.uint8]:
-    """Return the bytes of each row, `[B, bytes]`, of whatever type the numbers are, such as torch's
-    bfloat16, which NumPy has not; this waits for the device."""
+    """Return the bytes of each row, `[B, bytes]`; this waits for the device.
+
+    Any type of number will do, also torch's bfloat16, which NumPy does not have.
+    """
     if type(array) is not np.ndarray and _is_torch(array):
         flat = array.detach().cpu().reshape(array.shape[0], -1).contiguous()
         return to_numpy(flat.view(namespace(array).uint8))
@@ -179,9 +181,9 @@ def row_bytes(array: Array) -> NDArray[np.uint8]:
 
 
 def together(one: Any, other: Any) -> tuple[Any, Any]:
-    """Return two masks or counts on one device: off the host where either is off it.
+    """Return two masks or counts on one device: on the accelerator if either is there.
 
-    A bool or an int combines with anything and is left alone.
+    A bool or an int combines with anything and is returned as it is.
     """
     if isinstance(one, int) or isinstance(other, int):
         return one, other
@@ -190,5 +192,5 @@ def together(one: Any, other: Any) -> tuple[Any, Any]:
     if namespace(one) is namespace(other) and one.device == other.device:
         return one, other
     if isinstance(one, np.ndarray) or (str(one.device) == "cpu" and _is_torch(other)):
-        return place(to_numpy(one), other), other
-    return one, place(to_numpy(other), one)
+        return match_device(to_numpy(one), other), other
+    return one, match_device(to_numpy(other), one)

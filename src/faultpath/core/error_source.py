@@ -1,7 +1,7 @@
-"""Whose code an error comes from: that of a user's system, or faultpath's.
+"""Finds whether an error comes from a user's system or from faultpath.
 
 A traceback is read from its innermost frame outward. Frames of the standard library and of
-installed packages are passed over, because they do what they are told. The first that is left
+installed packages are skipped, because they only do what their caller asks. The first other frame
 decides.
 """
 
@@ -23,50 +23,51 @@ _STANDARD = tuple(
 _PACKAGES = (f"{os.sep}site-packages{os.sep}", f"{os.sep}dist-packages{os.sep}")
 
 _systems: set[str] = set()
-"""Folders of systems that are loaded, for those that are installed packages themselves."""
+"""Folders of loaded systems; those in installed packages would be skipped otherwise."""
 
 _MISUSE = (TypeError, ValueError, AttributeError, LookupError)
 """Errors that an argument of the wrong kind causes."""
 
 
 def ours(module: str) -> bool:
-    """Whether a module is the engine's, or of a distribution that carries its name,
-    `faultpath_...`, and answers for its own mistakes. The registry names what a user's file holds
-    `faultpath_system_...`, and that is the user's."""
+    """Return whether a module is the engine's or that of a distribution named `faultpath_...`.
+
+    Modules named `faultpath_system_...` are users' files, which the registry loads by that name.
+    """
     top = module.partition(".")[0]
     return top == "faultpath" or (top.startswith("faultpath_") and "_system_" not in top)
 
 
 def note_system(file: str) -> None:
-    """Note that the code beside `file` is a system's, even where it is an installed package.
+    """Note that the code beside `file` is a system's, even in an installed package.
 
-    Python's own modules are nobody's system, whoever names one by mistake.
+    The standard library is never taken for a system, even where a user names it by mistake.
     """
     folder = os.path.dirname(os.path.realpath(file)) + os.sep
     if not folder.startswith(_STANDARD) or any(part in folder for part in _PACKAGES):
         _systems.add(folder)
 
 
-def place(error: BaseException) -> str:
-    """Return the innermost line of a system's own code that an error came through, or nothing."""
+def location(error: BaseException) -> str:
+    """Return the innermost line of a system's own code in a traceback; empty if there is none."""
     return next(filter(None, _frames(error)), "")
 
 
-def place_in(report: str) -> str:
-    """Return the same of a traceback that was formatted, where the error itself is gone."""
+def location_in(report: str) -> str:
+    """Return `location` of a formatted traceback, as it comes from a worker."""
     frames = re.findall(r'^  File "(.+?)", line (\d+)', report, re.MULTILINE)
-    own = (
-        f"{near(file)}, line {line}" for file, line in reversed(frames) if not _passed_over(file)
-    )
+    own = (f"{near(file)}, line {line}" for file, line in reversed(frames) if not _skipped(file))
     return next(own, "")
 
 
 def described(error: BaseException) -> str:
-    """Return kind and message of an error, in one line. It is stored with outcomes, so it names no
-    path: those differ from machine to machine."""
-    pydantic, refused = sys.modules.get("pydantic"), cast(Any, error)
+    """Return kind and message of an error, in one line.
+
+    It is stored with outcomes, and so names no path: those differ from machine to machine.
+    """
+    pydantic, invalid = sys.modules.get("pydantic"), cast(Any, error)
     if pydantic is not None and isinstance(error, pydantic.ValidationError):
-        return one_line(f"{refused.title} cannot be made: {misfit_of(refused)}")
+        return one_line(f"{invalid.title} cannot be made: {misfit_of(invalid)}")
     try:
         message = error.msg if isinstance(error, SyntaxError) else str(error)
     except Exception:  # an error of the system's own may fail even at that
@@ -75,21 +76,21 @@ def described(error: BaseException) -> str:
 
 
 def located(error: UserError) -> UserError:
-    """Note in a `SystemMistake` which line of the system's code brought it about."""
-    if isinstance(error, SystemMistake) and not error.place:
-        error.place = place(error)
+    """Note in a `SystemMistake` the line of the system's code that caused it."""
+    if isinstance(error, SystemMistake) and not error.location:
+        error.location = location(error)
     return error
 
 
 def explained(error: BaseException) -> UserError | None:
-    """Return what to tell the author of a system; `None` for an error that is faultpath's own.
+    """Return the error to show to the author of a system; `None` for one of faultpath's own.
 
     An error raised in the system's code is its author's. Where that code called faultpath's, and
-    the error is of a kind that a wrong argument causes, either may be at fault.
+    the error is of a kind that a wrong argument causes, either may be at fault, and it says so.
     """
     if isinstance(error, UserError):
         return located(error)
-    own, innermost = place(error), next(_frames(error), "")
+    own, innermost = location(error), next(_frames(error), "")
     if not own or not (innermost or isinstance(error, (SystemExit, *_MISUSE))):
         return None
     what = described(error)
@@ -103,22 +104,22 @@ def explained(error: BaseException) -> UserError | None:
             "--traceback whether the fault is faultpath's"
         )
     mistake = SystemMistake(advice)
-    mistake.place, mistake.__cause__ = own, error
+    mistake.location, mistake.__cause__ = own, error
     return mistake
 
 
 def _frames(error: BaseException) -> Iterator[str]:
-    if isinstance(error, SyntaxError) and error.filename and not _passed_over(error.filename):
+    if isinstance(error, SyntaxError) and error.filename and not _skipped(error.filename):
         yield f"{near(error.filename)}, line {error.lineno or 1}"
     for frame, line in reversed(list(traceback.walk_tb(error.__traceback__))):
         file = os.path.realpath(frame.f_code.co_filename)
         if file.startswith(_our_folders()):
             yield ""
-        elif not _passed_over(frame.f_code.co_filename):
+        elif not _skipped(frame.f_code.co_filename):
             yield f"{near(file)}, line {line}"
 
 
-def _passed_over(name: str) -> bool:
+def _skipped(name: str) -> bool:
     # Code without a file: frozen modules, generated methods, what packages compiled from Cython.
     if name.startswith("<") or (name.endswith((".pyx", ".pxi")) and not os.path.exists(name)):
         return True

@@ -2,7 +2,7 @@
 
 
 class UserError(Exception):
-    """A mistake in what was asked: one sentence says what is wrong, where, and what to do.
+    """A user's mistake: one sentence says what is wrong, where, and what to do.
 
     The command line prints the sentence without a traceback and exits with status 2; a notebook
     shows it alone as well.
@@ -13,19 +13,19 @@ class UserError(Exception):
 
 
 class Stopped(UserError):
-    """Ctrl-C ended the command; the sentence says what is kept and how to go on."""
+    """Ctrl-C ended the command; the sentence says what is kept and how to resume."""
 
 
 class Notice(UserWarning):
-    """A sentence that a user should know of a run; workers hand it to their parent."""
+    """A sentence about a run that its user should read; workers pass it to their parent."""
 
 
 class SystemMistake(UserError):
     """A mistake in the code of a user's system."""
 
-    place: str = ""
-    """File and line of that code, once they are known; `faultpath.core.error_source` finds them."""
+    location: str = ""
+    """File and line of that code, once `faultpath.core.error_source` has found them."""
 
     def __str__(self) -> str:
         sentence = super().__str__()
-        return f"{self.place}: {sentence}" if self.place else sentence
+        return f"{self.location}: {sentence}" if self.location else sentence

@@ -1,4 +1,4 @@
-"""Public names of a package, each loaded from its module when it is first used."""
+"""Public names of a package, loaded from their modules on first use."""
 
 import random
 import sys
@@ -7,16 +7,16 @@ from importlib import import_module
 
 
 def load(package: str, homes: Mapping[str, str], name: str) -> object:
-    """Return what a name of a package stands for, and keep it there.
+    """Return the object of a public name, and set it as the package's attribute.
 
-    `AttributeError` for a name that is none of `homes`, which says the module of each.
+    `homes` gives the module of each name; `AttributeError` for any other name.
     """
     if name not in homes:
         raise AttributeError(f"module {package!r} has no attribute {name!r}")
-    drawn = random.getstate()
+    state = random.getstate()
     try:
         value = getattr(import_module(homes[name]), name)
     finally:
-        random.setstate(drawn)  # some libraries draw from it when they are imported
+        random.setstate(state)  # some libraries draw from it when they are imported
     vars(sys.modules[package])[name] = value
     return value

@@ -1,4 +1,4 @@
-"""Numbers in text, read alike wherever they stand: in ASCII digits, finite, and not lost."""
+"""Numbers in text: in ASCII digits, finite, and not rounded to zero."""
 
 import math
 import re
@@ -9,7 +9,7 @@ _DIGITS = 19
 
 
 def number_in(text: str) -> float:
-    """Return the number that a text states; `ValueError` says what it would have to be."""
+    """Return the number in a text; `ValueError` says what is needed instead."""
     text = text.strip()
     try:  # Python reads 1_0 as ten, and digits of every script
         number = float(text if text.isascii() and "_" not in text else "no number")
@@ -23,9 +23,9 @@ def number_in(text: str) -> float:
 
 
 def number_of(value: object) -> float:
-    """Return a number, or the one that a text states, of a size that can be added up.
+    """Return a number, or the number in a text, that is small enough for sums.
 
-    `ValueError` as `number_in`.
+    Raises as `number_in`.
     """
     if not isinstance(value, str | int | float):
         raise ValueError("a number")
@@ -36,7 +36,7 @@ def number_of(value: object) -> float:
 
 
 def whole_in(text: str) -> int:
-    """Return the whole number that a text states; `ValueError` says what it would have to be."""
+    """Return the whole number in a text; `ValueError` says what is needed instead."""
     if not re.fullmatch(r"[-+]?[0-9]+", text):
         raise ValueError("a whole number")
     if len(text.lstrip("+-")) > _DIGITS:

@@ -1,4 +1,4 @@
-"""Base classes of models of data; a result is one line in a console."""
+"""Base classes of data models; a console shows a result in one line."""
 
 from pydantic import BaseModel, ConfigDict
 
@@ -9,7 +9,7 @@ _LINE, _CELL = 160, 80
 
 
 class Frozen(BaseModel):
-    """Data that nobody changes, and that holds nothing but its fields."""
+    """Immutable data without further fields."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -18,7 +18,7 @@ class Shown(BaseModel):
     """Data with many fields, of which a console shows some."""
 
     def __repr__(self) -> str:
-        """Return the fields that say something."""
+        """Return the fields that are not empty."""
         line = ", ".join(
             f"{name}={shortened(printable(str(value)), _CELL)}"
             for name, value in self
@@ -30,4 +30,4 @@ class Shown(BaseModel):
 
 
 class Result(Shown, Frozen):
-    """A part of a result: data that nobody changes."""
+    """A part of a result: immutable, and one line in a console."""

@@ -1,7 +1,7 @@
-"""Random streams keyed by what they are for, never drawn from a shared generator.
+"""Random streams keyed by their purpose, never drawn from a shared generator.
 
-A draw is addressed by (purpose, scene id, seed, step). Two trials that share those four get the
-same numbers whatever else runs beside them, which is what makes treatments of a contrast paired.
+A draw is addressed by (purpose, scene id, seed, step). Two trials that share these four get the
+same numbers whatever else runs, which makes two treatments in a scene a pair.
 """
 
 import hashlib
@@ -16,13 +16,13 @@ from typing_extensions import override
 
 @lru_cache(maxsize=65536)
 def key(purpose: str, scene: str, seed: int) -> int:
-    """Return the 128-bit Philox key of an address, for whoever computes the stream himself."""
+    """Return the 128-bit Philox key of an address, for code that computes the stream itself."""
     digest = hashlib.blake2b(f"{purpose}\x1f{scene}\x1f{seed}".encode(), digest_size=16)
     return int.from_bytes(digest.digest(), "little")
 
 
 def words(key: int) -> np.ndarray:
-    """Return a 128-bit key as Philox takes it, two words of 64 bits, low first."""
+    """Return a 128-bit key as two words of 64 bits, low first, which is how Philox takes it."""
     return np.array([key & 0xFFFFFFFFFFFFFFFF, key >> 64], dtype=np.uint64)
 
 
@@ -38,8 +38,11 @@ def generator(purpose: str, scene: str, seed: int, step: int = 0) -> np.random.G
 
 
 class _Key(ISpawnableSeedSequence):
-    """A key where NumPy takes a seed: given as a key it would draw a seed from the system as well,
-    never to use it, which takes longer than all the rest."""
+    """A Philox key passed as a seed.
+
+    If NumPy is given a key it draws a seed from the operating system as well and never uses it,
+    which takes longer than everything else.
+    """
 
     def __init__(self, key: int, step: int) -> None:
         self._key, self._step = key, step
@@ -47,13 +50,13 @@ class _Key(ISpawnableSeedSequence):
 
     @override
     def generate_state(self, n_words: int, dtype: Any = np.uint32) -> np.ndarray:
-        """Return the key, which is what Philox asks for."""
+        """Return the key, in the form in which Philox asks for it."""
         del n_words, dtype
         return words(self._key)
 
     @override
     def spawn(self, n_children: int) -> list[Any]:
-        """Return seeds for further generators, which the address decides too."""
+        """Return seeds for further generators, which follow from the address too."""
         self._seeds = self._seeds or np.random.SeedSequence([self._key, self._step])
         return list(self._seeds.spawn(n_children))
 
@@ -63,7 +66,7 @@ def generators(
 ) -> Iterator[np.random.Generator]:
     """Yield `generator(purpose, scene, seed, step)` for each scene, much faster for many.
 
-    One object is moved from address to address, so each must be used before the next is asked for.
+    One object moves from address to address, so each must be used before the next is taken.
     """
     bits = np.random.Philox(key=0, counter=np.array([0, 0, 0, step], dtype=np.uint64))
     stream, fresh = np.random.Generator(bits), bits.state

@@ -1,4 +1,4 @@
-"""Text from elsewhere, made fit for a terminal; parts of sentences."""
+"""Text made safe for a terminal, parts of sentences, and names that do not exist."""
 
 import os
 import re
@@ -11,7 +11,7 @@ from typing import Any
 _WORD = re.compile(r"\S{240,}")
 _LONGEST = 4000
 _MOST, _FEW = 20, 8
-"""Names that a sentence lists, and how many of them where there are more."""
+"""Names that a sentence lists at most, and how many it lists where there are more."""
 _NUMPY = re.compile(
     r"(divide by zero|overflow|underflow|invalid value) encountered"
     r"|Mean of empty slice|All-NaN|Degrees of freedom <= 0"
@@ -19,14 +19,13 @@ _NUMPY = re.compile(
 
 
 def has_control_characters(text: str) -> bool:
-    """Return whether text holds what no name needs: control characters, line separators, or lone
-    surrogates, which are no text at all."""
+    """Return whether text holds control characters, line separators or lone surrogates."""
     hidden = ("Cc", "Cs", "Zl", "Zp")
     return not text.isprintable() and any(unicodedata.category(c) in hidden for c in text)
 
 
 def printable(text: str) -> str:
-    """Escape what is not to be seen: control characters, lone surrogates, marks of direction.
+    """Escape control characters, lone surrogates and marks of direction.
 
     Line breaks are escaped as well, so that a name stays on its line.
     """
@@ -38,15 +37,18 @@ def printable(text: str) -> str:
 
 
 def one_line(text: str) -> str:
-    """Return a message as one line that can be read: line breaks become spaces, the rest of what
-    is not to be seen is escaped, and words and messages without end are cut in the middle."""
+    """Return a message as one readable line.
+
+    Line breaks become spaces, other invisible characters are escaped, and very long words and
+    messages are cut in the middle.
+    """
     line = printable(" ".join(part.strip() for part in text.split("\n") if part.strip()))
     line = _WORD.sub(lambda word: _cut(word[0], 120), line)
     return line if len(line) <= _LONGEST else _cut(line, _LONGEST // 2)
 
 
 def represented(value: object) -> str:
-    """Return `repr(value)`, or its type where a system's own object fails at that."""
+    """Return `repr(value)`, or its type where a user's object fails at that."""
     try:
         return repr(value)
     except Exception:
@@ -54,7 +56,7 @@ def represented(value: object) -> str:
 
 
 def shortened(text: str, most: int) -> str:
-    """Return a text of at most so many letters."""
+    """Return a text of at most `most` characters."""
     return text if len(text) <= most else f"{text[: most - 1]}…"
 
 
@@ -81,7 +83,7 @@ def capital(words: str) -> str:
 def unknown(what: str, name: str, known: Iterable[str]) -> str:
     """Return `unknown WHAT 'NAME'`, a close match where there is one, and the known names.
 
-    Of many names only some are listed, the nearest to what was given.
+    Of many names only those closest to `name` are listed.
     """
     known = tuple(known)
     close = get_close_matches(name, known, n=1)
@@ -92,23 +94,22 @@ def unknown(what: str, name: str, known: Iterable[str]) -> str:
 
 
 def near(file: str) -> str:
-    """Return the path of a file from here where it lies below, and in full elsewhere."""
+    """Return a path relative to the working folder where it lies below, else in full."""
     path = os.path.relpath(file)
     return file if path.startswith(os.pardir) else path
 
 
 def extra(name: str) -> str:
-    """Say how to install what an extra of faultpath names: it comes from its checkout."""
+    """Return how to install an extra of faultpath, which needs its checkout."""
     return f"in the checkout of faultpath, pip install '.[{name}]'"
 
 
 def show_warning(
     message: Warning | str, category: type[Warning], filename: str, lineno: int, *more: Any
 ) -> None:
-    """Show a warning in one line, in place of `warnings.showwarning`.
+    """Show a warning in one line; replaces `warnings.showwarning`.
 
-    What NumPy says of numbers that overflow or are none is left out: what becomes of them is said
-    where it matters.
+    NumPy's warnings of overflow and NaN are left out, because the results say where it matters.
     """
     del more
     if issubclass(category, RuntimeWarning) and _NUMPY.match(str(message)):

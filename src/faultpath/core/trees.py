@@ -1,4 +1,4 @@
-"""The source trees that a system's code comes from, and the installed packages beside them."""
+"""The source trees of a system's code, and the installed packages that it imports."""
 
 import os
 import re
@@ -25,31 +25,31 @@ _NO_TREE = ("pyvenv.cfg", "manifest.json")
 """Files of folders that hold no sources of a system: a virtual environment, a run."""
 _SUFFIXES = (".py", *EXTENSION_SUFFIXES)
 _MOST = 20_000
-"""Files and folders in a tree; one with more is no project's."""
+"""Files and folders of a tree; one with more is no project."""
 _IMPORT = re.compile(
     r"(?:^|[;:])[ \t]*(?:from[ \t]+(\w+)[\w.]*[ \t]+import\b|import[ \t]+([\w., \t]+))", re.M
 )
 _REQUIRES = re.compile(r"^Requires-Dist: *([\w.-]+)(?!.*(?:extra|platform|os_name))", re.M)
-"""Distribution that another needs on every machine."""
+"""A requirement that holds on every machine."""
 
 
 @dataclass(frozen=True)
 class Root:
-    """A module to start from: its name, and its file where it cannot be found by its name."""
+    """A module to start from: its name, and its file if it cannot be found by name."""
 
     module: str
     file: Path | None = None
 
     @property
     def path(self) -> Path | None:
-        """The file of the module, where it was imported or has no other name."""
+        """File of the module, if it was imported or is not found by name."""
         file = getattr(sys.modules.get(self.module), "__file__", None)
         return self.file or (Path(file) if file else None)
 
 
 @dataclass(frozen=True)
 class Tree:
-    """The sources of a package, or of a folder from which modules are imported by their names."""
+    """The sources of a package, or of a folder whose modules are imported by name."""
 
     folder: Path
     package: str
@@ -57,32 +57,32 @@ class Tree:
     digests: Mapping[Path, str]
     """SHA-256 of each source."""
 
-    def of(self, place: Path) -> dict[Path, str]:
+    def of(self, location: Path) -> dict[Path, str]:
         """Return the digests of a file, or of all files in a folder."""
-        within = (path for path in self.digests if path == place or place in path.parents)
+        within = (path for path in self.digests if path == location or location in path.parents)
         return {path: self.digests[path] for path in within}
 
 
 def trees_of(roots: Iterable[Root]) -> tuple[list[Tree], set[str]]:
-    """Return the trees of some modules, and the installed packages that these import, by name.
+    """Return the trees of some modules, and the names of the installed packages they import.
 
     The tree of a module in a package is the package. Of any other it is the folder of its file,
     with the folders below except hidden ones, virtual environments, run folders, `__pycache__` and
     `node_modules`. A home directory, the folder for temporary files, the root of a file system, and
-    what holds more than 20,000 files and folders are no project: only the files beside count there.
-    Where what is imported comes from another folder of the user's, its tree counts too.
+    a folder with more than 20,000 files and folders are no project: there only the files beside the
+    module count. A module that is imported from another folder of the user's adds its tree.
     """
     trees: list[Tree] = []
     names, others = set[str](), set[str]()
     waiting = [(root.module.partition(".")[0], root.file) for root in roots]
-    for package, file in waiting:  # it grows on the way
-        for place in (Path(os.path.realpath(p)) for p in ([file] if file else places(package))):
-            tree = next((tree for tree in trees if tree.of(place)), None)
+    for package, file in waiting:  # the loop itself adds to it
+        for path in map(Path, map(os.path.realpath, [file] if file else package_paths(package))):
+            tree = next((tree for tree in trees if tree.of(path)), None)
             if tree is None:
-                trees.append(tree := _tree(place, package))
-            for name in sorted(_names(tree.of(place)) - names):
+                trees.append(tree := _tree(path, package))
+            for name in sorted(_names(tree.of(path)) - names):
                 names.add(name)
-                kinds = {kind_of(path / "__init__.py") for path in places(name)}
+                kinds = {kind_of(folder / "__init__.py") for folder in package_paths(name)}
                 if kinds and (ours(name) or ("local" in kinds and not ours(package))):
                     waiting.append((name, None))
                 elif "installed" in kinds:
@@ -90,23 +90,23 @@ def trees_of(roots: Iterable[Root]) -> tuple[list[Tree], set[str]]:
     return trees, others
 
 
-def _tree(place: Path, package: str) -> Tree:
-    if place.is_dir():
-        return Tree(place, package, _digests(_sources(place)))
-    folder, files = place.parent, list[Path]()
+def _tree(path: Path, package: str) -> Tree:
+    if path.is_dir():
+        return Tree(path, package, _digests(_sources(path)))
+    folder, files = path.parent, list[Path]()
     if folder not in (Path.home(), Path(folder.anchor), Path(os.path.realpath(gettempdir()))):
         files = _sources(folder)
     if not files:
         beside = next(os.walk(folder), (None, (), ()))[2]
         files = [folder / name for name in sorted(beside) if name.endswith(_SUFFIXES)]
-    return Tree(folder, "", _digests((*files, place)))
+    return Tree(folder, "", _digests((*files, path)))
 
 
 def _sources(folder: Path) -> list[Path]:
-    """Return the sources in and below a folder; none where there is too much."""
+    """Return the sources in and below a folder; none if it is too large for a project."""
     sources: list[Path] = []
     count = 0
-    for place, folders, files in os.walk(folder):
+    for parent, folders, files in os.walk(folder):
         count += len(folders) + len(files)
         if count > _MOST:
             return []
@@ -115,16 +115,16 @@ def _sources(folder: Path) -> list[Path]:
             for name in folders
             if not name.startswith(".")
             and name not in _NO_SOURCE
-            and not any(os.path.exists(os.path.join(place, name, file)) for file in _NO_TREE)
+            and not any(os.path.exists(os.path.join(parent, name, file)) for file in _NO_TREE)
         )
-        sources += (Path(place, name) for name in sorted(files) if name.endswith(_SUFFIXES))
+        sources += (Path(parent, name) for name in sorted(files) if name.endswith(_SUFFIXES))
     return sources
 
 
-def places(package: str) -> list[Path]:
+def package_paths(package: str) -> list[Path]:
     """Return the folders of a top-level package, or the file of a module; empty without one.
 
-    Looking for it runs nothing.
+    It runs no code of the package.
     """
     try:
         spec = getattr(sys.modules.get(package), "__spec__", None) or find_spec(package)
@@ -133,19 +133,20 @@ def places(package: str) -> list[Path]:
     if spec is None or package in sys.stdlib_module_names:
         return []
     origin = [spec.origin] if spec.has_location and spec.origin else []
-    places = origin if spec.submodule_search_locations is None else spec.submodule_search_locations
-    return [place for place in map(Path, places) if place.exists()]  # one may lie in an archive
+    folders = spec.submodule_search_locations
+    paths = map(Path, origin if folders is None else folders)
+    return [path for path in paths if path.exists()]  # one may lie in an archive
 
 
 _loaded: WeakKeyDictionary[ModuleType, str] = WeakKeyDictionary()
-"""Digest of a module's file when it was first looked up: later edits do not reach what is loaded,
-and what runs here does not change with the file."""
+"""Digest of a module's file when it was first looked up, since later edits of the file do not reach
+the loaded module."""
 _imports: dict[str, set[str]] = {}
-"""First names of what a source imports, by its digest."""
+"""Top-level packages that a source imports, by its digest."""
 
 
 def _digests(files: Iterable[Path]) -> dict[Path, str]:
-    """Return the SHA-256 of each file that can be read, as it was loaded."""
+    """Return the SHA-256 of each readable file, as it was when it was loaded."""
     modules = loaded()
     digests: dict[Path, str] = {}
     for path in files:
@@ -155,7 +156,7 @@ def _digests(files: Iterable[Path]) -> dict[Path, str]:
             continue
         try:
             source = path.read_bytes()
-        except OSError:  # nothing of it can run
+        except OSError:  # what cannot be read cannot run either
             continue
         digests[path] = sha256(source).hexdigest()
         if digests[path] not in _imports:
@@ -178,7 +179,7 @@ def _real(path: str) -> str:
 
 
 def imported(files: Iterable[Path]) -> set[str]:
-    """Return the first names of what some sources import."""
+    """Return the top-level packages that some sources import."""
     return _names(_digests(files))
 
 
@@ -196,7 +197,7 @@ def _imported(text: str) -> set[str]:
 
 @cache
 def kind_of(path: Path) -> Literal["standard", "installed", "local"]:
-    """Return whose a file is, by where it lies: Python's, an installed package's, the user's."""
+    """Return the owner of a file by its folder: Python, an installed package, or the user."""
     real = os.path.realpath(path.parent) + os.sep
 
     def lies_in(*names: str) -> bool:
@@ -210,9 +211,9 @@ def kind_of(path: Path) -> Literal["standard", "installed", "local"]:
 
 @cache
 def _installed() -> dict[str, Path]:
-    """Return where the metadata of each installed distribution are, by name, spelled with `_`."""
-    places = [Path(place) for place in sys.path if _INSTALLED & {*Path(place).parts}]
-    entries = [entry for place in places for entry in sorted(place.glob("*.dist-info"))]
+    """Return the metadata folder of each installed distribution, by name, spelled with `_`."""
+    folders = [folder for folder in map(Path, sys.path) if _INSTALLED & {*folder.parts}]
+    entries = [entry for folder in folders for entry in sorted(folder.glob("*.dist-info"))]
     return {_spelled(entry.name.partition("-")[0]): entry for entry in reversed(entries)}
 
 
@@ -221,8 +222,8 @@ def _spelled(name: str) -> str:
 
 
 @cache
-def _holder(package: str) -> str:
-    """Return the distribution that holds a top-level package; empty without one."""
+def _distribution(package: str) -> str:
+    """Return the distribution of a top-level package; empty without one."""
     if package in sys.stdlib_module_names:
         return ""
     if _spelled(package) in _installed():
@@ -241,12 +242,12 @@ def _text(file: Path) -> str:
 
 @cache
 def release(package: str) -> str | None:
-    """Return the version of the distribution that holds a top-level package, `None` without one.
+    """Return the version of a top-level package's distribution, `None` without one.
 
-    One that was installed from a folder or an archive of the user's own keeps its version while
-    its contents change; a digest of what was installed stands beside it.
+    A distribution installed from a folder or an archive of the user's own keeps its version while
+    its contents change, so a digest of what was installed follows the version.
     """
-    entry = _installed().get(_holder(package))
+    entry = _installed().get(_distribution(package))
     if entry is None:
         return None
     version = entry.stem.partition("-")[2]
@@ -258,9 +259,9 @@ def release(package: str) -> str | None:
 
 
 def releases(packages: Iterable[str]) -> dict[str, str]:
-    """Return the versions of installed packages and of all that they require, by distribution."""
-    names = [name for package in sorted(packages) if (name := _holder(package))]
-    for name in names:  # it grows on the way
+    """Return the versions of installed packages and of their requirements, by distribution."""
+    names = [name for package in sorted(packages) if (name := _distribution(package))]
+    for name in names:  # the loop itself adds to it
         for line in _REQUIRES.findall(_text(_installed()[name] / "METADATA")):
             required = _spelled(line)
             if required in _installed() and required not in names:
@@ -269,5 +270,5 @@ def releases(packages: Iterable[str]) -> dict[str, str]:
 
 
 def packages() -> dict[str, str]:
-    """Return the versions of the packages that numbers depend on, of those installed."""
+    """Return the versions of those installed packages on which numbers depend."""
     return {name: version for name in _PACKAGES if (version := release(name))}

@@ -1,6 +1,6 @@
 """Sentences on data that does not fit its model: the field, what is wrong, what is allowed.
 
-Pydantic's own sentences are written for programmers; whatever tells a user of one asks here.
+Pydantic's own sentences are written for programmers.
 """
 
 import re
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from pydantic import BaseModel, ValidationError
 
 _BRANCH = re.compile(r".*[\[(].*|constrained-.*|float|int|str|bool|none|[A-Z]\w*")
-"""A step of a place that names a branch that was tried and is no key: `float`, `literal['fit']`."""
+"""A step of a location that names a branch of a union and no key: `float`, `literal['fit']`."""
 _NUMBER, _WHOLE = "a number", "a whole number"
 _KINDS = {
     "string": "text",
@@ -42,25 +42,25 @@ _WITH = {
     "too_short": "of at least {min_length} values, and has {actual_length}",
     "too_long": "of at most {max_length} values, and has {actual_length}",
 }
-"""Values allowed, by the kind of error, with what the error says of it."""
+"""Values allowed, by the kind of error, with the error's own limits."""
 _SHOWN = 60
 
 
 @dataclass(frozen=True)
 class Misfit:
-    """The first thing that is wrong."""
+    """The first mistake in some data."""
 
-    place: tuple[str | int, ...]
-    """Keys and indices that lead to it."""
+    location: tuple[str | int, ...]
+    """Keys and indices on the way to it."""
     says: str
-    """In words that follow a colon; what is allowed is among them."""
+    """What is wrong and what is allowed, to follow a colon."""
     names_it: bool = False
-    """Whether the words name the place themselves."""
+    """Whether the words name the location themselves."""
 
     @property
     def where(self) -> str:
-        """The field: `audits[0].name`; empty for the whole."""
-        steps = (f"[{part}]" if isinstance(part, int) else f".{part}" for part in self.place)
+        """Name of the field, `audits[0].name`; empty for all of the data."""
+        steps = (f"[{part}]" if isinstance(part, int) else f".{part}" for part in self.location)
         return printable("".join(steps).removeprefix("."))
 
     def __str__(self) -> str:
@@ -68,22 +68,22 @@ class Misfit:
 
 
 def misfit_of(error: "ValidationError", model: "type[BaseModel] | None" = None) -> Misfit:
-    """Return what is wrong in words. With the `model`, an unknown field comes with the known."""
+    """Return what is wrong. With the `model`, a sentence on an unknown field lists the known."""
     errors = error.errors(include_url=False)
     first = errors[0]
     if where := first.get("ctx", {}).get("where"):  # a sentence of faultpath's own
         return Misfit(tuple(where), str(first["msg"]), names_it=True)
     if first["type"] == "missing":
-        # What is misspelt is missing as well; the word that stands there says more.
-        beside = first["loc"][:-1]
-        strange = (e for e in errors if e["type"] == "extra_forbidden" and e["loc"][:-1] == beside)
-        first = next(strange, first)
-    place = _place(first)
-    same = [e for e in errors if _place(e) == place]
-    return Misfit(place, _problem(same, _fields(model, place[:-1])))
+        # A misspelt field is missing as well; the word that is there says more.
+        parent = first["loc"][:-1]
+        extra = (e for e in errors if e["type"] == "extra_forbidden" and e["loc"][:-1] == parent)
+        first = next(extra, first)
+    location = _location(first)
+    same = [e for e in errors if _location(e) == location]
+    return Misfit(location, _problem(same, _fields(model, location[:-1])))
 
 
-def _place(error: Mapping[str, Any]) -> tuple[str | int, ...]:
+def _location(error: Mapping[str, Any]) -> tuple[str | int, ...]:
     steps = cast("tuple[str | int, ...]", error["loc"])
     last = len(steps) - 1 if error["type"] in ("missing", "extra_forbidden") else len(steps)
     return tuple(
@@ -94,7 +94,7 @@ def _place(error: Mapping[str, Any]) -> tuple[str | int, ...]:
 
 
 def _problem(errors: Sequence[Mapping[str, Any]], known: Sequence[str]) -> str:
-    """Say what is wrong at one place: `errors` are of the branches that were tried."""
+    """Return what is wrong at one location, from the errors of all branches of its union."""
     first = errors[0]
     kind, context = str(first["type"]), first.get("ctx", {})
     if kind == "missing":
@@ -118,16 +118,16 @@ def _problem(errors: Sequence[Mapping[str, Any]], known: Sequence[str]) -> str:
     return f"is {_shown(first['input'])}, {must}"
 
 
-def _fields(model: object, place: Sequence[str | int]) -> tuple[str, ...]:
+def _fields(model: object, location: Sequence[str | int]) -> tuple[str, ...]:
     from pydantic import BaseModel
 
     if isinstance(model, type) and issubclass(model, BaseModel):
-        names = [step for step in place if isinstance(step, str)]
+        names = [step for step in location if isinstance(step, str)]
         if not names:
             return tuple(model.model_fields)
         field = model.model_fields.get(names[0])
         return () if field is None else _fields(field.annotation, names[1:])
-    return tuple(name for part in get_args(model) for name in _fields(part, place))
+    return tuple(name for part in get_args(model) for name in _fields(part, location))
 
 
 def _shown(value: object) -> str:

@@ -1,4 +1,4 @@
-"""The base class of interventions, and the random numbers that they draw."""
+"""Base class of interventions, and the random numbers that they draw."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
@@ -16,21 +16,21 @@ from faultpath.core.streams import generators
 from faultpath.interface import Channel
 
 Memory: TypeAlias = Any
-"""Value that an intervention carries from step to step: an array, a tuple or `None`; never written
-to."""
+"""Value that an intervention carries from step to step: an array, a tuple or `None`; never changed
+in place."""
 
 
 @dataclass(frozen=True)
 class Draws:
     """Random numbers addressed by cause, scene, seed and step, one row a scene.
 
-    Two readers, treatments or blocks that share those four get the same numbers. Every call at one
-    address starts the stream anew: calls with different shapes, and normal and uniform numbers,
-    come from the same bits. `beside` gives an independent address.
+    Readers, treatments and blocks that share these four get the same numbers. Every call restarts
+    the stream of its address, so calls with different shapes, and normal and uniform numbers, come
+    from the same bits. `beside` gives an independent address.
 
-    With `own`, numbers mix those of the cause with those of `own`: two draws of one cause with the
+    With `own`, numbers are a mixture of the cause's and of `own`: two draws of one cause with the
     loadings a and b have the correlation a * b (one-factor model; uniform numbers through the
-    Gaussian copula). Permutations are of the cause.
+    Gaussian copula). Permutations are always the cause's.
     """
 
     scenes: tuple[str, ...]
@@ -39,25 +39,27 @@ class Draws:
     loading: float = 1.0
     """Share of the cause in a normal number, from -1 to 1."""
     own: "Draws | None" = None
-    _kept: dict[Any, Any] = field(
+    _cache: dict[Any, Any] = field(
         default_factory=dict[Any, Any], init=False, repr=False, compare=False
     )
-    """Numbers drawn last, which the other readers of a step need too; and draws of `beside`."""
+    """Latest numbers, which all readers of a step need; and draws of `beside`."""
 
     def normal(self, shape_per_scene: tuple[int, ...], step: int) -> NDArray[np.float64]:
         """Return standard normal numbers `[B, *shape_per_scene]`."""
-        drawn = self._rows(
+        common = self._rows(
             "normal", shape_per_scene, step, lambda g: g.normal(size=shape_per_scene)
         )
         if self.own is None:
-            return drawn
+            return common
         rest = sqrt(1 - self.loading**2)
-        return self.loading * drawn + rest * self.own.normal(shape_per_scene, step)
+        return self.loading * common + rest * self.own.normal(shape_per_scene, step)
 
     def uniform(self, shape_per_scene: tuple[int, ...], step: int) -> NDArray[np.float64]:
         """Return uniform numbers in [0, 1), `[B, *shape_per_scene]`."""
         if self.own is not None:
-            from scipy.special import ndtr  # only here: it takes longer to load than all else
+            from scipy.special import (
+                ndtr,  # only here: it takes longer to import than everything else
+            )
 
             return ndtr(self.normal(shape_per_scene, step))
         return self._rows("uniform", shape_per_scene, step, lambda g: g.random(shape_per_scene))
@@ -67,23 +69,24 @@ class Draws:
         return self._rows("permutation", n, step, lambda g: g.permutation(n))
 
     def beside(self, suffix: str) -> "Draws":
-        """Return independent draws: `/N` those of a part, `?N` those of a further ask in a step."""
-        if suffix not in self._kept:
+        """Return independent draws: suffix `/N` for a part, `?N` for a further request in a
+        step."""
+        if suffix not in self._cache:
             own = None if self.own is None else self.own.beside(suffix)
             cause = self.cause + suffix
-            self._kept[suffix] = Draws(self.scenes, self.seed, cause, self.loading, own)
-        return self._kept[suffix]
+            self._cache[suffix] = Draws(self.scenes, self.seed, cause, self.loading, own)
+        return self._cache[suffix]
 
     def _rows(
         self, what: str, size: Any, step: int, draw: Callable[[np.random.Generator], Any]
     ) -> NDArray[Any]:
-        known = self._kept.get((what, size))
-        if known is not None and known[0] == step:
-            return known[1]
+        cached = self._cache.get((what, size))
+        if cached is not None and cached[0] == step:
+            return cached[1]
         streams = generators(f"fault/{self.cause}", self.scenes, self.seed, step)
-        drawn = np.stack([draw(stream) for stream in streams])
-        self._kept[what, size] = (step, drawn)
-        return drawn
+        numbers = np.stack([draw(stream) for stream in streams])
+        self._cache[what, size] = (step, numbers)
+        return numbers
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,12 +103,12 @@ class Moment:
 
 
 class Intervention(BaseModel, ABC):
-    """One behaviour, pure and batched over scenes.
+    """One way of changing a reading, pure and batched over scenes.
 
     A reading is an array `[B, ...]` of NumPy, torch or any array-API namespace; the value has its
-    shape, dtype and device. A step costs no host wait on an accelerator. Neither the reading nor
-    the memory is written to. `apply` is called at every delivery until the fault is over, also
-    before the onset, so that a delay has a past to draw on; the tap takes the value in the window.
+    shape, dtype and device. A step never waits for an accelerator. Neither the reading nor the
+    memory is changed in place. `apply` is called at every delivery until the fault is over, even
+    before the onset, so that a delay has past readings; the tap uses its value in the window only.
 
     A subclass has a literal `kind` and is one of `faultpath.faults.kinds.Listed`.
     """
@@ -113,12 +116,12 @@ class Intervention(BaseModel, ABC):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     value_field: ClassVar[str | None] = None
-    """The field that takes VALUE in fault text `CHANNEL:KIND=VALUE`: the first after `kind`.
-    `None`: there is none, and KIND stands alone."""
+    """Field that takes VALUE in fault text `CHANNEL:KIND=VALUE`: the first after `kind`. `None`:
+    there is none, and the text is `CHANNEL:KIND`."""
     random: ClassVar[bool] = False
-    """Whether errors are drawn, so that those of several channels can be correlated."""
+    """Whether it draws errors, so that those of several channels can be correlated."""
     phrase: ClassVar[str] = ""
-    """Effect on the reading in a few words; a field's name in braces stands for its value."""
+    """Its effect on the reading in a few words; a field's name in braces stands for its value."""
 
     @classmethod
     @override
@@ -131,31 +134,31 @@ class Intervention(BaseModel, ABC):
 
     @abstractmethod
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
-        """Return `(value, memory)`: what the reader would get, and what to carry on."""
+        """Return the value for the reader, and the memory for the next call."""
 
     def is_random(self) -> bool:
-        """Return whether errors are drawn, here or in a part."""
+        """Return whether it or a part of it draws errors."""
         return self.random
 
     def words(self) -> str:
-        """Return what is done, in a few words."""
+        """Return its effect in a few words."""
         return self.phrase.format_map({name: number(value) for name, value in self})
 
     def resolved(self, channel: Channel) -> Self:
-        """Return the intervention with what it takes from the channel's declaration filled in."""
+        """Return the intervention with its defaults from the channel's declaration filled in."""
         return self
 
     def misfit(self, shape: tuple[int, ...]) -> str | None:
         """Return why it cannot act on one scene's reading of `shape`, or `None`.
 
-        By default, because the numbers of a field that holds several do not fit it.
+        By default it checks the fields that hold several numbers.
         """
         fields: list[tuple[str, Any]] = [entry for entry in self if isinstance(entry[1], tuple)]
         return next(filter(None, (misfit(name, value, shape) for name, value in fields)), None)
 
 
 def number(value: Any) -> str:
-    """Return a number or nested tuple of numbers in short form, and anything else as it is."""
+    """Return a number or nested tuple of numbers in short form, and any other value as text."""
     if isinstance(value, tuple):
         return "(" + ", ".join(map(number, cast("tuple[Any, ...]", value))) + ")"
     return f"{value:g}" if isinstance(value, float) else str(value)

@@ -1,4 +1,4 @@
-"""Errors that are drawn: anew at every step, once a scene, wandering slowly, or growing."""
+"""Interventions with random errors: new at every step, once a scene, wandering, or growing."""
 
 from math import exp, sqrt
 from typing import Annotated, ClassVar, Literal, Self
@@ -13,9 +13,9 @@ from faultpath.core.arrays import (
     copy,
     is_zero,
     like,
+    match_device,
     namespace,
     pick,
-    place,
     rows,
 )
 from faultpath.faults.base import Intervention, Memory, Moment, number
@@ -38,7 +38,7 @@ def _with_error(reading: Array, error: HostArray, relative: bool) -> Array:
 
 
 class Noise(Intervention):
-    """Add Gaussian noise, drawn anew at every step and for every number of the reading."""
+    """Add Gaussian noise, drawn at every step and for every number of the reading."""
 
     kind: Literal["noise"] = "noise"
     random: ClassVar[bool] = True
@@ -61,8 +61,8 @@ class Noise(Intervention):
 class UniformScale(Intervention):
     """Multiply by a factor drawn once per scene, uniform in 1 ± half_range.
 
-    The calibration noise of DCC training (paper, "Interventions and Evidence": ± 20 %, one draw a
-    window, held throughout). Channels of different cause draw independently.
+    It is the calibration noise of DCC training (paper, "Interventions and Evidence": ± 20 %, one
+    draw a window, held throughout). Channels of different causes draw independently.
     """
 
     kind: Literal["uniform_scale"] = "uniform_scale"
@@ -96,24 +96,24 @@ class Bias(Intervention):
     """`None`: constant in a scene."""
 
     def begin(self, reading: Array, at: Moment) -> Memory:
-        """Return the process on the host in units of `std`, and the step that it stands at."""
+        """Return the process on the host in units of `std`, and the step it has reached."""
         return at.draws.beside("/0").normal(tuple(reading.shape[1:]), 0), 0
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
         """Return `reading + std * x(t)`, or `reading * (1 + std * x(t))` when relative."""
         if at.elapsed < 0 or is_zero(self.std):
             return reading, memory
-        process, done = memory
+        process, reached = memory
         if self.time_constant_s is not None:
-            stays = exp(-at.dt_s / self.time_constant_s)
-            for step in range(done + 1, at.step + 1):
+            kept = exp(-at.dt_s / self.time_constant_s)
+            for step in range(reached + 1, at.step + 1):
                 draw = at.draws.normal(process.shape[1:], step)
-                process = stays * process + sqrt(1 - stays**2) * draw
+                process = kept * process + sqrt(1 - kept**2) * draw
         error = np.asarray(self.std) * process
         return _with_error(reading, error, self.relative), (process, at.step)
 
     def words(self) -> str:
-        """Return `bias of std STD`, and how long it lasts."""
+        """Return `bias of std STD`, and its time constant."""
         what = f"{'relative ' if self.relative else ''}bias of std {number(self.std)}"
         if self.time_constant_s is None:
             return f"{what}, one draw a scene"
@@ -131,12 +131,12 @@ class Drift(Intervention):
     """Random walk: standard deviation after one second, in the reading's unit."""
 
     def begin(self, reading: Array, at: Moment) -> Memory:
-        """Return the walk so far, zero, and the last step that it holds."""
+        """Return the random walk, at zero, and the step it has reached."""
         return namespace(reading).zeros_like(reading), 0
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
         """Return `reading + rate * t + walk(t)`, where t is the time since the onset."""
-        walk, done = memory
+        walk, reached = memory
         if at.elapsed <= 0:
             return reading, (walk, at.step)
         value = reading
@@ -146,7 +146,7 @@ class Drift(Intervention):
         if self.walk_per_sqrt_s:
             deviation = self.walk_per_sqrt_s * sqrt(at.dt_s)
             onset = at.step - at.elapsed
-            for step in range(max(done, onset) + 1, at.step + 1):
+            for step in range(max(reached, onset) + 1, at.step + 1):
                 draw = at.draws.normal(tuple(reading.shape[1:]), step)
                 walk = walk + like(deviation * draw, reading)
             value = value + walk
@@ -168,17 +168,17 @@ class Dropout(Intervention):
     random: ClassVar[bool] = True
     probability: float = Field(ge=0, le=1)
     substitute: Erase | None = None
-    """Delivered instead of a lost reading; `None`: the last that arrived, or else the first."""
+    """Value in place of a lost reading; `None`: the last that arrived, or else the first."""
 
     def begin(self, reading: Array, at: Moment) -> Memory:
         """Return the last reading that arrived."""
         return copy(reading)
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
-        """Return the reading where it arrives and the substitute where it is lost."""
+        """Return the reading where it arrives, and the substitute where it is lost."""
         if at.elapsed < 0 or not self.probability:
             return reading, copy(reading)
-        arrives = place(at.draws.uniform((), at.step) >= self.probability, reading)
+        arrives = match_device(at.draws.uniform((), at.step) >= self.probability, reading)
         last = pick(arrives, reading, memory)
         if self.substitute is None:
             return last, last
@@ -204,8 +204,8 @@ class Dropout(Intervention):
 class Shuffle(Intervention):
     """Permute a reading along one of its own axes, for instance the steps of a history.
 
-    The permutation is drawn per scene and step. Scenes are never exchanged: a result would then
-    depend on which other scenes run beside it.
+    The permutation is drawn per scene and step. Scenes are never exchanged, because a result would
+    then depend on the other scenes of its block.
     """
 
     kind: Literal["shuffle"] = "shuffle"
@@ -218,7 +218,7 @@ class Shuffle(Intervention):
         if at.elapsed < 0:
             return reading, None
         xp = namespace(reading)
-        order = place(at.draws.permutation(reading.shape[self.axis], at.step), reading)
+        order = match_device(at.draws.permutation(reading.shape[self.axis], at.step), reading)
         ones = [1] * (reading.ndim - 1)
         ones[self.axis - 1] = -1
         order = xp.broadcast_to(xp.reshape(order, (order.shape[0], *ones)), reading.shape)

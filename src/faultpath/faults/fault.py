@@ -1,4 +1,4 @@
-"""A fault: a channel, who gets it, which of all interventions, and when."""
+"""A fault: which channel, which readers, which intervention, and when."""
 
 from collections.abc import Collection, Iterable
 from math import inf
@@ -14,22 +14,22 @@ from faultpath.faults.kinds import AnyIntervention
 from faultpath.interface import Channel, Interface, module_of, modules
 
 ALL = "*"
-"""Every reader of the channel: the fault is shared."""
+"""All readers of the channel: the fault is shared."""
 
 
 class Fault(Frozen):
     """One intervention on one channel, at some or all of its readers, for some time.
 
-    `isolated` and `shared` are the same fault with two values of `readers`. During recovery the
-    value returns linearly to the reading, number by number.
+    An isolated and a shared fault differ in `readers` only. During recovery the value returns
+    linearly to the reading, number by number.
     """
 
     kind: Literal["fault"] = "fault"
-    """Stored with trials, whose identity it is part of."""
+    """Part of the identity of stored trials."""
     channel: str
     intervention: AnyIntervention
     readers: tuple[str, ...] = Field(default=(ALL,), min_length=1)
-    """Readers (`module.place`), whole modules, or `*` for everyone who reads the channel."""
+    """Readers (`module.place`), whole modules, or `*` for all readers of the channel."""
     onset_step: int = Field(default=0, ge=0)
     """First step in force."""
     duration_steps: int | None = Field(default=None, ge=1)
@@ -52,11 +52,11 @@ class Fault(Frozen):
 
     @property
     def drawn_from(self) -> str:
-        """The cause that addresses the random numbers."""
+        """Cause that addresses the random numbers."""
         return self.cause or f"{self.channel}:{self.intervention.kind}"
 
     def draws(self, scenes: tuple[str, ...], seed: int) -> Draws:
-        """Return the random numbers of the fault, which all of its readers share."""
+        """Return the fault's random numbers, which all of its readers share."""
         if self.loading == 1.0:
             return Draws(scenes, seed, self.drawn_from)
         own = f"{self.drawn_from}/own/{self.channel}:{self.intervention.kind}"
@@ -71,19 +71,20 @@ class Fault(Frozen):
         return inf if self.duration_steps is None else self.onset_step + self.duration_steps
 
     def over(self, step: int) -> bool:
-        """Return whether nothing is in force any more."""
+        """Return whether the fault and its recovery have ended."""
         return step >= self._end + self.recovery_steps
 
     def weight(self, step: int) -> float:
-        """Return the share of the fault in the value: 1 in the window, 0 outside, between after it.
+        """Return the fault's share of the value: 1 in the window, falling in recovery, else 0.
 
         In recovery step k = 1 … n it is 1 - k / (n + 1), so the reading is clean again in step
         n + 1.
         """
         if step < self.onset_step:
             return 0.0
-        left = (self.recovery_steps - (step - self._end)) / (self.recovery_steps + 1)
-        return min(max(left, 0.0), 1.0)
+        # This line through the recovery is above 1 in the window and below 0 afterwards.
+        share = (self.recovery_steps - (step - self._end)) / (self.recovery_steps + 1)
+        return min(max(share, 0.0), 1.0)
 
     def describe(self) -> str:
         """Return the fault in a few words."""
@@ -98,13 +99,13 @@ class Fault(Frozen):
 
 
 def describe(faults: Iterable[Fault]) -> str:
-    """Return faults in a few words each."""
+    """Return each fault in a few words."""
     return "; ".join(fault.describe() for fault in faults)
 
 
 def at_readers(faults: Iterable[Fault], names: Collection[str]) -> tuple[Fault, ...]:
-    """Return resolved faults at those of their readers that are named, as places or by modules;
-    without the faults that then reach nobody."""
+    """Return resolved faults at the named readers or modules only, dropping faults left without a
+    reader."""
     narrowed: list[Fault] = []
     for fault in faults:
         readers = tuple(c for c in fault.readers if c in names or module_of(c) in names)
@@ -114,7 +115,7 @@ def at_readers(faults: Iterable[Fault], names: Collection[str]) -> tuple[Fault, 
 
 
 def reaching(faults: Iterable[Fault], present: Collection[str]) -> tuple[Fault, ...]:
-    """Return resolved faults at the readers that are present; `UserError` where none of them is."""
+    """Return resolved faults at the present readers only; `UserError` where that leaves none."""
     faults = tuple(faults)
     reached = at_readers(faults, present)
     if faults and not reached:
@@ -128,22 +129,21 @@ def reaching(faults: Iterable[Fault], present: Collection[str]) -> tuple[Fault, 
 def resolve(
     faults: Iterable[Fault], interface: Interface, present: Collection[str] | None = None
 ) -> tuple[Fault, ...]:
-    """Return faults that act together as `Taps` takes them: with every reader spelled out, and
-    defaults filled in.
+    """Return faults that act together with all readers spelled out and defaults filled in.
 
-    A reader that they name needs to read only one of their channels. Readers that are not `present`
-    in a variant are left out, see `reaching`. Raises `UserError` for a fault that cannot act on
-    `interface`.
+    `Taps` takes them in this form. A named reader has to read only one of the faults' channels.
+    Readers that a variant does not have are left out: `present` lists those it has; see `reaching`.
+    Raises `UserError` for a fault that cannot act on `interface`.
     """
     faults = tuple(faults)
     channels = [interface.channel(fault.channel) for fault in faults]
     resolved: list[Fault] = []
     for fault, channel in zip(faults, channels, strict=True):
         _check_readers(fault.readers, channels, interface)
-        wrong = fault.intervention.misfit(interface.source(channel.sources[0]).shape)
-        if wrong:
+        reason = fault.intervention.misfit(interface.source(channel.sources[0]).shape)
+        if reason:
             raise UserError(
-                f"channel '{fault.channel}': {fault.intervention.kind} does not fit: {wrong}"
+                f"channel '{fault.channel}': {fault.intervention.kind} does not fit: {reason}"
             )
         update = {
             "readers": channel.readers,
@@ -156,15 +156,15 @@ def resolve(
 
 
 def _check_readers(names: Iterable[str], channels: Iterable[Channel], interface: Interface) -> None:
-    """Raise `UserError` for a name of nobody who reads one of the channels."""
+    """Raise `UserError` for a name that is no reader of any of the channels."""
     readers = {reader for channel in channels for reader in channel.readers}
     known = readers | {module_of(reader) for reader in readers}
     for name in names:
         if name == ALL or name in known:
             continue
         what = " and ".join(f"channel '{channel.name}'" for channel in channels)
-        everyone = {reader for channel in interface.channels for reader in channel.readers}
-        if name in everyone or name in modules(interface):
+        all_readers = {reader for channel in interface.channels for reader in channel.readers}
+        if name in all_readers or name in modules(interface):
             problem = f"'{name}' does not read it; its readers: {listed(known)}"
         else:
             problem = unknown("reader", name, known)

@@ -1,7 +1,7 @@
-"""Every kind of intervention, by its name in fault text and in JSON.
+"""All kinds of intervention, by their names in fault text and in JSON.
 
-Installed packages add kinds of their own by entry points in the group `faultpath.faults`. Nothing
-of such a package is imported before a fault of its kind is met.
+Installed packages add kinds by entry points in the group `faultpath.faults`. Such a package is
+imported only when a fault of its kind is read.
 """
 
 from collections.abc import Mapping
@@ -27,40 +27,20 @@ from faultpath.faults.recorded import Recorded
 from faultpath.faults.values import Delay, Erase, Freeze, Hold, Offset, Quantise, Rotate, Scale
 from faultpath.interface import Channel
 
-__all__ = [
-    "Bias",
-    "Delay",
-    "Drift",
-    "Dropout",
-    "Erase",
-    "Freeze",
-    "Hold",
-    "Noise",
-    "Offset",
-    "Quantise",
-    "Recorded",
-    "Rotate",
-    "Scale",
-    "Sequence",
-    "Shuffle",
-    "UniformScale",
-]
-"""Every kind, for `faultpath.faults`."""
-
 
 class Sequence(Intervention):
-    """Apply interventions in turn: each acts on what the one before delivers.
+    """Apply interventions in turn: each acts on the value of the one before.
 
-    Each part begins at the onset, so a delay after a scale still delivers what came unscaled
-    before it, just as two faults with one window do. Parts draw independently of each other.
-    Interventions that follow each other in time are several faults, each with its window.
+    All parts begin at the onset, so a delay after a scale still delivers unscaled readings at
+    first, as two faults with one window would. Parts draw independently of each other.
+    Interventions that follow each other in time are several faults, each with its own window.
     """
 
     kind: Literal["sequence"] = "sequence"
     parts: "tuple[AnyIntervention, ...]" = Field(min_length=1)
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
-        """Return the last part's value; the memory holds one entry a part."""
+        """Return the last part's value. The memory holds one entry a part."""
         value, carried = reading, ()
         for index, part in enumerate(self.parts):
             here = replace(at, draws=at.draws.beside(f"/{index}"))
@@ -84,7 +64,7 @@ class Sequence(Intervention):
         return self.model_copy(update={"parts": parts})
 
     def misfit(self, shape: tuple[int, ...]) -> str | None:
-        """Return what the first part that does not fit says."""
+        """Return the reason of the first part that does not fit."""
         return next(filter(None, (part.misfit(shape) for part in self.parts)), None)
 
 
@@ -106,18 +86,20 @@ Listed: TypeAlias = (
     | Recorded
     | Sequence
 )
+"""Every kind of faultpath's own. Text, JSON and API find a kind here; `faultpath.faults` names it
+too."""
 
 
 @cache
 def installed_kinds() -> Mapping[str, str]:
-    """Return the classes that installed packages declare, `module:Class`, by their kind."""
+    """Return the classes of installed packages, `module:Class`, by kind."""
     return {point.name: point.value for point in entry_points(group="faultpath.faults")}
 
 
 def intervention_of(kind: str) -> type[Intervention]:
-    """Return the class of a kind, ours or an installed package's; `KeyError` where nobody has it.
+    """Return the class of a kind, ours or an installed package's; `KeyError` for an unknown kind.
 
-    Raises `SystemMistake` where the package's class is none of that kind.
+    Raises `SystemMistake` where a package's class is not of the kind it is declared as.
     """
     if kind in INTERVENTIONS:
         return INTERVENTIONS[kind]
@@ -140,23 +122,23 @@ def intervention_of(kind: str) -> type[Intervention]:
     )
 
 
-def _read(value: Any, of_ours: ValidatorFunctionWrapHandler) -> Intervention:
+def _read(value: Any, validate_listed: ValidatorFunctionWrapHandler) -> Intervention:
     kind = getattr(value, "kind", None)
     if isinstance(value, Mapping):
         kind = cast("Mapping[str, Any]", value).get("kind")
     if not isinstance(kind, str) or kind in INTERVENTIONS or kind not in installed_kinds():
-        return of_ours(value)
+        return validate_listed(value)
     return intervention_of(kind).model_validate(value)
 
 
 AnyIntervention: TypeAlias = Annotated[
     SerializeAsAny[Annotated[Listed, Discriminator("kind")]], WrapValidator(_read)
 ]
-"""Any intervention; its `kind` says in JSON which."""
+"""Any intervention; in JSON its `kind` tells which."""
 
 Sequence.model_rebuild()
 
 INTERVENTIONS: dict[str, type[Intervention]] = {
     intervention.model_fields["kind"].default: intervention for intervention in get_args(Listed)
 }
-"""Ours, by kind."""
+"""Those of `Listed`, by kind."""

@@ -1,4 +1,4 @@
-"""From the text of a fault to the faults that it states, channel by channel."""
+"""Parses the text of a fault into faults, channel by channel."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -17,12 +17,12 @@ from faultpath.faults.text import FaultText, number_of
 from faultpath.interface import Interface, groups
 
 FaultPreset: TypeAlias = Callable[[float], tuple[Fault, ...]]
-"""A system's named fault: its size in, the faults out, which share a cause unless they name one;
-raises `UserError` for a wrong size."""
+"""A system's named fault, from its size to faults, which share a cause unless they name one; raises
+`UserError` for a wrong size."""
 
 
 def _kinds() -> tuple[str, ...]:
-    """Return the kinds that text can state: those that need no more than one value."""
+    """Return the kinds that text can state, which need at most one value."""
     return (*(kind for kind in INTERVENTIONS if kind != "sequence"), *installed_kinds())
 
 
@@ -39,7 +39,7 @@ _ANY_FAULT = tuple(f"{name}{unit}" for name in _WINDOW for unit in ("", "_s"))
 def parse_fault(
     text: str | FaultText, interface: Interface, presets: Mapping[str, FaultPreset], dt_s: float
 ) -> tuple[Fault, ...]:
-    """Return the faults that a text states, one for each channel, as `resolve` returns them.
+    """Return the faults in a text, one for each channel, as `resolve` returns them.
 
     `dt_s` is the length of a control step, for options in seconds. Raises `UserError`, one sentence
     that quotes the text and names the known values.
@@ -73,8 +73,8 @@ def parse_fault(
 
 
 def _timing(options: Mapping[str, str], dt_s: float) -> tuple[dict[str, Any], dict[str, str]]:
-    """Return the fields of a fault that say when it is in force, and the other options."""
-    when: dict[str, Any] = {}
+    """Return the fields of a fault that give its time in force, and the other options."""
+    window: dict[str, Any] = {}
     rest: dict[str, str] = {}
     for key, text in options.items():
         plain = key.removesuffix("_s")
@@ -82,19 +82,21 @@ def _timing(options: Mapping[str, str], dt_s: float) -> tuple[dict[str, Any], di
             rest[key] = text
             continue
         field, least = _WINDOW[plain]
-        if field in when:
+        if field in window:
             raise UserError(f"'{plain}' is given in steps and in seconds; drop one")
-        unit, of, length = "control steps", "", 1.0
+        unit, detail, length = "control steps", "", 1.0
         if plain != key:
-            unit, of, length = "seconds", f" of {dt_s:g} s each", dt_s
+            unit, detail, length = "seconds", f" of {dt_s:g} s each", dt_s
         value = number_of(key, text, unit) / length
         steps = round(value) if abs(value) < 1e9 else -1
         if steps < least or abs(value - steps) > 1e-6 * max(1.0, abs(value)):
-            raise UserError(f"{key}={text} is not a whole number of steps{of}, at least {least}")
-        when[field] = steps
-    if "recovery_steps" in when and "duration_steps" not in when:
+            raise UserError(
+                f"{key}={text} is not a whole number of steps{detail}, at least {least}"
+            )
+        window[field] = steps
+    if "recovery_steps" in window and "duration_steps" not in window:
         raise UserError("'recover' needs an end to recover from; add for=STEPS")
-    return when, rest
+    return window, rest
 
 
 _LOADING = "a loading is a number from -1 to 1, and of errors that are drawn"
@@ -173,5 +175,5 @@ def _value(key: str, text: str) -> Any:
         return {"kind": text}
     if "/" in text:
         return tuple(number_of(key, part) for part in text.split("/"))
-    # What is echoed in a refusal is what was written, -1 and not -1.0.
+    # An integer, so that a message repeats -1 and not -1.0.
     return int(text) if re.fullmatch(r"[+-]?[0-9]{1,15}", text) else number_of(key, text)

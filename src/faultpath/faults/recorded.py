@@ -1,4 +1,4 @@
-"""Errors that were recorded elsewhere, delivered step by step."""
+"""Recorded errors of other trials, delivered step by step."""
 
 import hashlib
 from collections.abc import Collection, Mapping
@@ -24,7 +24,7 @@ class Address(NamedTuple):
 
 
 Record: TypeAlias = Mapping[Address, NDArray[np.float32]]
-"""Errors `[T, ...]`, one for each control step from the first on."""
+"""Errors `[T, ...]`, one for each control step."""
 
 _COLUMNS = ("channel", "scene", "seed", "steps", "turns", "errors")
 
@@ -32,8 +32,8 @@ _COLUMNS = ("channel", "scene", "seed", "steps", "turns", "errors")
 def encode_record(record: Record, turning: Collection[str] = ()) -> bytes:
     """Return a record as a Parquet file.
 
-    Readings of the channels in `turning` are rotation matrices, and so are their errors, which turn
-    them in their own axes; all other errors are added.
+    Readings of the channels in `turning` are rotation matrices; their errors are rotation matrices
+    too, in the readings' own axes. All other errors are added.
     """
     from faultpath.core.files.parquet import encode
 
@@ -50,7 +50,7 @@ def encode_record(record: Record, turning: Collection[str] = ()) -> bytes:
 
 
 class Recorded(Intervention):
-    """Deliver with the errors that a file holds for the channel, by scene, seed and step.
+    """Add the errors that a file holds for the channel, by scene, seed and step.
 
     So one module alone can get the errors that all modules had in another trial. After the end of a
     scene's record its last error stays.
@@ -63,10 +63,10 @@ class Recorded(Intervention):
     channel: str = ""
     """Filled in by `resolved`."""
     digest: str = ""
-    """Digest of the file, filled in by `resolved`: trials belong to that content."""
+    """Digest of the file, filled in by `resolved`, so that trials belong to its contents."""
 
     def resolved(self, channel: Channel) -> Self:
-        """Take channel and digest; `UserError` for a file that holds no errors of the channel."""
+        """Fill in channel and digest; `UserError` for a file without errors of the channel."""
         digest, errors, _ = _read(self.file, channel.name)
         if self.digest not in ("", digest):
             raise UserError(f"{self.file} is not the file that the fault was made with: {_AGAIN}")
@@ -78,7 +78,8 @@ class Recorded(Intervention):
         return self.model_copy(update={"channel": channel.name, "digest": digest})
 
     def begin(self, reading: Array, at: Moment) -> Memory:
-        """Return the errors of all steps, `[T, B, ...]`, on the host, and whether they turn."""
+        """Return the errors of all steps, `[T, B, ...]`, on the host, and whether they turn
+        readings."""
         digest, errors, turns = _read(self.file, self.channel)
         if digest != self.digest:
             raise UserError(f"{self.file} has changed: {_AGAIN}")
@@ -99,7 +100,7 @@ class Recorded(Intervention):
         return np.stack(padded, axis=1), turns
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
-        """Return the reading with the error of this step."""
+        """Return the reading with this step's error."""
         errors, turns = memory
         error = like(errors[min(at.step, len(errors) - 1)].astype(np.float64), reading)
         if turns:
@@ -138,8 +139,10 @@ def _read(
 def decode_record(
     data: bytes, file: str
 ) -> Mapping[str, Mapping[tuple[str, int], tuple[bool, NDArray[np.float32]]]]:
-    """Return what `encode_record` wrote: by channel, then by scene and seed, whether errors turn
-    the reading, and the errors `[T, N]`. `UserError`, naming `file`, for what is no record."""
+    """Return what `encode_record` wrote; `UserError`, naming `file`, for data that is no record.
+
+    By channel, then by scene and seed: whether errors turn the reading, and the errors `[T, N]`.
+    """
     from faultpath.core.files.parquet import Unreadable, decode
 
     channels: dict[str, dict[tuple[str, int], tuple[bool, NDArray[np.float32]]]] = {}

@@ -1,4 +1,4 @@
-"""The text of a fault, taken apart before an interface gives it meaning.
+"""The text of a fault, split into its parts; an interface then gives them meaning.
 
     gain:delay=5                        CHANNEL:KIND=VALUE, at every reader of the channel
     velocity:offset=1/0/0               a vector
@@ -8,7 +8,7 @@
     PRESET=+0.1                         a fault that the system names
     gain:bias=0.1 & velocity:freeze     faults of one cause; `loading=` correlates what they draw
 
-Further sizes stand after commas without a name: `gain:scale=0.8,0.9,1.1,onset=20@observer`, or a
+Further sizes follow after commas, without a name: `gain:scale=0.8,0.9,1.1,onset=20@observer`, or a
 range `FROM..TO/COUNT`. The name of a correlation group may stand for its channels.
 """
 
@@ -34,7 +34,7 @@ class FaultText:
     """The parts of a fault's text. `faultpath.faults.parse_fault` makes faults of them."""
 
     text: str
-    """As it was written."""
+    """The text as written."""
     name: str
     """Name of a channel, a correlation group or a preset."""
     kind: str | None
@@ -48,9 +48,9 @@ class FaultText:
 
     @classmethod
     def read(cls, text: str) -> Self:
-        """Take a text apart; a range `FROM..TO/COUNT` stands for that many sizes, both ends too.
+        """Split a text; a range `FROM..TO/COUNT` stands for COUNT sizes, both ends included.
 
-        `UserError` for what has no such form.
+        `UserError` for a text of another form.
         """
         try:
             parts = text.split("&")
@@ -108,12 +108,12 @@ class FaultText:
 
     @property
     def cause(self) -> str:
-        """Address of the random numbers: without sizes, so that they are the same at each."""
+        """Address of the random numbers, without sizes, so that all sizes draw the same."""
         head = self.name if self.kind is None else f"{self.name}:{self.kind}"
         return " & ".join((head, *(part.cause for part in self.joined)))
 
     def each(self) -> tuple[Self, ...]:
-        """Return the fault of each size."""
+        """Return one fault a size."""
         return tuple(map(self.at, self.sizes)) if len(self.sizes) > 1 else (self,)
 
     def at(self, size: str) -> Self:
@@ -128,7 +128,7 @@ class FaultText:
 
     @classmethod
     def __get_pydantic_core_schema__(cls, source: object, handler: object) -> CoreSchema:
-        """Take text as a field of a model, and write it word for word."""
+        """Read a field of a model from text, and write it word for word."""
         written = core_schema.to_string_ser_schema(when_used="always")
         return core_schema.no_info_plain_validator_function(
             cls._field, serialization=written, json_schema_input_schema=core_schema.str_schema()
@@ -144,7 +144,7 @@ class FaultText:
 
 
 def number_of(key: str, text: str, what: str = "a number") -> float:
-    """Return the number that a text states; `UserError` names the `key` that it belongs to."""
+    """Return the number in a text; `UserError` names the `key` that it belongs to."""
     try:
         return number_in(text)
     except ValueError as error:

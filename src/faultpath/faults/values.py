@@ -1,6 +1,6 @@
-"""Interventions that draw nothing: on the value of a reading, and on when it arrives.
+"""Deterministic interventions, on the value of a reading and on when it arrives.
 
-Those that hold a reading keep copies, so a producer may reuse its memory.
+Interventions that hold readings keep copies, so that a source may reuse its memory.
 """
 
 import math
@@ -34,12 +34,12 @@ class Offset(Intervention):
     by: Constant
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
-        """Return `reading + by`; an offset of zero leaves even the sign of a zero alone."""
+        """Return `reading + by`; an offset of zero does not even change the sign of a zero."""
         return (reading if is_zero(self.by) else reading + constant(self.by, reading)), None
 
 
 class Rotate(Intervention):
-    """Turn a vector by a rotation vector in radians, as a sensor does that is mounted askew."""
+    """Turn a vector by a rotation vector in radians, like a sensor that is mounted at an angle."""
 
     kind: Literal["rotate"] = "rotate"
     phrase = "turned by {by} rad"
@@ -83,38 +83,38 @@ class Quantise(Intervention):
 
 
 class Erase(Intervention):
-    """Replace the reading by a default that carries no information (paper: erasure)."""
+    """Replace the reading by a default without information (paper: erasure)."""
 
     kind: Literal["erase"] = "erase"
     default: Constant | None = None
     """In the reading's unit; `None`: the erasure default that the channel declares."""
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
-        """Return the default; raises `ValueError` before `resolved` has supplied one."""
+        """Return the default; `ValueError` where `resolved` was not called first."""
         if self.default is None:
             raise ValueError("Erase has no default; resolve it against its channel first")
         return filled(self.default, reading), None
 
     def words(self) -> str:
-        """Return `erased`, with the default where one is given."""
+        """Return `erased`, with the default if it has one."""
         return "erased" if self.default is None else f"erased to {number(self.default)}"
 
     def resolved(self, channel: Channel) -> Self:
-        """Take the channel's erasure default where no other is given."""
+        """Fill in the channel's erasure default where no other is given."""
         if self.default is not None:
             return self
         return self.model_copy(update={"default": channel.erasure_default})
 
 
 class Delay(Intervention):
-    """Deliver the reading of some steps ago; the first reading until there is one that old."""
+    """Deliver the reading of some steps before; the first reading until there is one that old."""
 
     kind: Literal["delay"] = "delay"
     phrase = "delayed by {steps} steps"
     steps: int = Field(ge=0)
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
-        """Return the newest reading that is at least `steps` old, and the past since it."""
+        """Return the newest reading that is at least `steps` old, and the readings since then."""
         past = (*(memory or ()), (at.step, copy(reading)))
         while len(past) > 1 and past[1][0] <= at.step - self.steps:
             past = past[1:]
@@ -122,7 +122,7 @@ class Delay(Intervention):
 
 
 class Hold(Intervention):
-    """Refresh the reading at every n-th step from the onset on: a lower rate."""
+    """Refresh the reading only at every n-th step from the onset on, as a lower rate would."""
 
     kind: Literal["hold"] = "hold"
     phrase = "refreshed every {every} steps"
@@ -130,7 +130,7 @@ class Hold(Intervention):
     """Steps between two refreshes."""
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
-        """Return the held reading, refreshed when its time has come."""
+        """Return the held reading, refreshed when it is due."""
         value, last = memory or (None, None)
         refresh = at.elapsed // self.every
         if refresh != last or at.elapsed < 0:
@@ -141,13 +141,13 @@ class Hold(Intervention):
 class Freeze(Intervention):
     """Hold the reading of the onset (paper: freezing).
 
-    Where a tap is silent at the onset, its last reading before that; if it has none, its first.
+    Where a tap delivers nothing at the onset it is the last reading before, or else the first.
     """
 
     kind: Literal["freeze"] = "freeze"
     phrase = "frozen"
 
     def apply(self, reading: Array, memory: Memory, at: Moment) -> tuple[Array, Memory]:
-        """Return the held reading, which follows the readings up to the onset."""
+        """Return the held reading; up to the onset that is the present one."""
         value = copy(reading) if memory is None or at.elapsed <= 0 else memory
         return value, value

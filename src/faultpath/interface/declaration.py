@@ -27,7 +27,7 @@ Reader = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]*\.[a-z][a-z0
 
 
 def _readable(text: str) -> str:
-    """Refuse what files would not give back and terminals would act upon."""
+    """Refuse control characters, which files may lose and terminals execute."""
     for character in text:
         if character != "\n" and has_control_characters(character):
             raise ValueError(f"holds the control character U+{ord(character):04X}")
@@ -66,7 +66,7 @@ class Provenance(StrEnum):
     PRIVILEGED = "privileged"
     """Known to the simulator only; not available at deployment."""
     INTERNAL = "internal"
-    """A value inside the one module that reads it, exposed so that it can be intervened on."""
+    """A value inside the one module that reads it, exposed so that faults can act on it."""
     CONSTANT = "constant"
     COMMANDED = "commanded"
 
@@ -80,7 +80,7 @@ class Gap(StrEnum):
 
 
 class Uncertainty(Frozen, allow_inf_nan=False):
-    """The error expected of a source at deployment: a standard deviation or a half-range.
+    """Expected error of a source at deployment: a standard deviation or a half-range.
 
     In the source's unit, or as a fraction of its value when `relative`.
     """
@@ -99,14 +99,14 @@ class Uncertainty(Frozen, allow_inf_nan=False):
 
     @property
     def expected_std(self) -> float:
-        """The standard deviation; a half-range h counts as h / sqrt(3)."""
+        """Standard deviation; for a half-range h it is h / sqrt(3)."""
         if self.std is not None:
             return self.std
         return (self.half_range or 0.0) / 3**0.5
 
 
 class Source(Frozen, allow_inf_nan=False):
-    """Something that produces a reading at every step."""
+    """A producer of a reading at every step."""
 
     name: Name
     unit: Words
@@ -116,12 +116,12 @@ class Source(Frozen, allow_inf_nan=False):
     provenance: Provenance
     latency_s: float = Field(default=0.0, ge=0)
     rate_hz: float | None = Field(default=None, gt=0)
-    """`None`: fresh at every control step."""
+    """`None`: sampled at every control step."""
     uncertainty: Uncertainty | None = None
     scale: float | None = Field(default=None, gt=0)
-    """Typical magnitude in `unit`; makes an absolute uncertainty comparable with others."""
+    """Typical magnitude in `unit`, to compare an absolute uncertainty with others."""
     correlation_group: Name | None = None
-    """Sources of one group err together, by one cause."""
+    """Sources of one group have one cause of error."""
     description: Words = ""
 
     @property
@@ -139,7 +139,7 @@ class Channel(Frozen, allow_inf_nan=False):
 
     name: Name
     sources: tuple[Name, ...] = Field(min_length=1)
-    """Sources that may feed the channel; the first does at deployment."""
+    """Possible sources of the channel; the first is used at deployment."""
     readers: tuple[Reader, ...] = Field(min_length=1)
     """Every place that reads the channel, as `module.place`."""
     erasure_default: Constant = 0.0

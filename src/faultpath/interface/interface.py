@@ -1,8 +1,7 @@
-"""The interface of a system as a whole: parts that fit each other, and who reads what.
+"""The interface of a system as a whole: its consistency, and the readers that a fault reaches.
 
-Each refusal says where and what to do. The paper's rule on who reads what is recursive: a module
-that reads a channel and reconstructs a source passes the channel's faults on to everything that
-reads its output.
+Each refusal says where and what to do. Reaching is recursive, as in the paper: a module that reads
+a channel and reconstructs a source passes the channel's faults on to all readers of its output.
 """
 
 from collections import deque
@@ -26,17 +25,17 @@ def _refuse(where: Where, sentence: str) -> PydanticCustomError:
 
 
 class Interface(Frozen, allow_inf_nan=False):
-    """All sources and channels of a system, and which modules produce sources themselves."""
+    """All sources and channels of a system, and the sources that modules produce."""
 
     name: Name
     sources: tuple[Source, ...]
     channels: tuple[Channel, ...]
     reconstructs: dict[Name, Made] = Field(default_factory=dict[str, tuple[str, ...]])
-    """Module to the sources that it produces; a file may name a single one without a list."""
+    """Module to the sources that it produces; a file may give a single one without a list."""
 
     @property
     def reconstructions(self) -> tuple[tuple[str, str], ...]:
-        """Each module that produces a source, with the source."""
+        """Pairs of a module and a source that it produces."""
         return tuple(
             (module, name) for module, names in self.reconstructs.items() for name in names
         )
@@ -52,8 +51,8 @@ class Interface(Frozen, allow_inf_nan=False):
     def shaped(self, shapes: Mapping[str, tuple[int, ...]]) -> Self:
         """Return the interface with other shapes of some sources, by name.
 
-        For what a setting decides: how many candidates a planner draws, how many windows are laid
-        out as one scene. Raises `UserError` for an unknown source.
+        They may depend on settings, such as the number of candidates that a planner draws or of
+        windows in one scene. Raises `UserError` for an unknown source.
         """
         for name in shapes:
             self.source(name)
@@ -150,7 +149,7 @@ def _check_reconstructions(interface: Interface, known: Mapping[str, Source]) ->
 
 
 def _check_cycles(interface: Interface) -> None:
-    """Refuse modules that reconstruct what they themselves need within a step."""
+    """Refuse modules that reconstruct a source they depend on within a step."""
     waiting = {
         module: {
             module_of(reader)
@@ -161,7 +160,7 @@ def _check_cycles(interface: Interface) -> None:
         for module, names in interface.reconstructs.items()
     }
     while leaves := [m for m, below in waiting.items() if not below & waiting.keys()]:
-        for module in leaves:  # nothing that they make comes back to them
+        for module in leaves:  # nothing they produce comes back to them
             del waiting[module]
     if not waiting:
         return
@@ -182,7 +181,7 @@ def module_of(reader: str) -> str:
 
 
 def modules(interface: Interface) -> tuple[str, ...]:
-    """Return every module that reads something, in the order of declaration."""
+    """Return all modules with a reader, in order of declaration."""
     return tuple(dict.fromkeys(module_of(name) for c in interface.channels for name in c.readers))
 
 
@@ -213,11 +212,11 @@ def transitive_readers(interface: Interface, channel: str) -> tuple[str, ...]:
 
 
 def rank(interface: Interface) -> tuple[Channel, ...]:
-    """Return the channels, the one to audit first in front.
+    """Return the channels in the order in which to audit them.
 
-    By how many readers a fault reaches, how many read the channel itself, and the expected
-    relative uncertainty of its first source, where an unknown one counts least (paper, section
-    "Propose Repairs, Then Audit Their Composition").
+    They are ordered by the number of readers that a fault reaches, the number that read the channel
+    itself, and the expected relative uncertainty of its first source, the unknown last (paper,
+    section "Propose Repairs, Then Audit Their Composition").
     """
 
     def order(channel: Channel) -> tuple[int, int, float, str]:

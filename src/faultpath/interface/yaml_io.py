@@ -19,10 +19,10 @@ def read_interface(
     readers: Mapping[str, Sequence[str]] | None = None,
     writers: Mapping[str, str] | None = None,
 ) -> Interface:
-    """Return the interface in a YAML file, in YAML text (a `str` with a line break), or as data.
+    """Return the interface in a YAML file, in YAML text (a `str` with a line break), or in data.
 
-    What it does not say about who reads and who reconstructs is taken from `readers` (by
-    channel) and `writers` (module by source), where these are given.
+    Readers and reconstructions that it does not list are taken from `readers` (by channel) and
+    `writers` (module by source), where these are given.
 
     Raises `UserError` with file, line and what to do.
     """
@@ -47,7 +47,7 @@ def read_interface(
     try:
         document = read_yaml(text)
         data = cast("dict[str, Any]", document.data)
-        # YAML holds whatever its author wrote.
+        # YAML may hold anything.
         if not isinstance(data, dict):  # pyright: ignore[reportUnnecessaryIsInstance]
             raise Misread("holds no interface; start with `name:`, `sources:`, `channels:`")
         _complete(data, readers or {}, writers or {})
@@ -59,7 +59,7 @@ def read_interface(
 def _complete(
     data: dict[str, Any], readers: Mapping[str, Sequence[str]], writers: Mapping[str, str]
 ) -> None:
-    """Fill in who reads and who reconstructs; what has another shape is left for validation."""
+    """Fill in readers and reconstructions; malformed data is left for validation."""
     for channel in _dicts(data, "channels"):
         if "readers" not in channel and channel.get("name") in readers:
             channel["readers"] = list(readers[channel["name"]])

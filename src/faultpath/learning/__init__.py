@@ -1,7 +1,7 @@
 """Repairs as objects: uncertainty training, withholding and reconstruction of any torch module.
 
-A fit gets its inputs through the taps of the system's interface, and what perturbs them are the
-faults of an audit. Nothing here loads torch before a module is fitted.
+A fit gets its inputs through the taps of the system's interface, and the faults of an audit perturb
+them. Torch is loaded only when a module is fitted.
 """
 
 from faultpath.learning.fitting import Fit, evaluate, fit, load, mean_squared_error

@@ -1,7 +1,7 @@
-"""Fit a torch module of the user's to windows that come through the taps.
+"""Fits a user's torch module to windows that come through the taps.
 
-Laws. First weights and the order of minibatches depend on module and seed, never on the repair; an
-error of size zero changes no bit; the process keeps the random numbers of torch that it had.
+Laws. Initial weights and the order of minibatches depend on module and seed, never on the repair;
+an error of size zero changes no bit; torch's random state in the process is the same afterwards.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from faultpath.learning.model_card import (
     save,
     weights_sha256,
 )
-from faultpath.learning.repair import Repair, kept, understood
+from faultpath.learning.repair import Repair, parsed_by_cause, withheld_faults
 from faultpath.learning.windows import VALIDATION, Windows, delivered, named
 from faultpath.loop import TapCount, added
 
@@ -49,11 +49,12 @@ class Fit:
     """In evaluation mode."""
     record: FitRecord
     path: Path | None = None
-    """Path of its weights, with the record beside them, where a folder was given."""
+    """Path of its weights, with the record beside them, if a folder was given."""
 
 
 def mean_squared_error(output: Tensor, target: Tensor) -> Tensor:
-    """Return the mean squared error; `UserError` where shapes differ, which torch would stretch."""
+    """Return the mean squared error; `UserError` for different shapes, which torch would
+    broadcast."""
     from torch.nn import functional
 
     if output.shape != target.shape:
@@ -78,24 +79,24 @@ def fit(
 ) -> Fit:
     """Fit a module, as a baseline or with a repair, and return it with its record.
 
-    The module's `forward` takes one mapping, as a module of the loop does: what the tap delivers
-    of the channel `gain` at the place `model` is `inputs["gain", "model"]`, `[n, T, ...]`, or
-    `[n, ...]` where windows have no steps.
+    The module's `forward` takes one mapping, as a module of the loop does: the deliveries of the
+    channel `gain` at the place `model` are `inputs["gain", "model"]`, `[n, T, ...]`, or `[n, ...]`
+    where windows have no steps.
 
     Args:
-        module: The module to fit; it is copied, and its weights are the initial ones. Or a
+        module: The module to fit, which is copied with its weights as the initial ones; or a
             function that makes it, called with torch's random numbers at the seed.
         data: Windows and targets.
         loss: Function of the module's output and the targets, tensors as `Windows` names them.
         repair: One repair or several; none makes a baseline.
         seed: Seed of initial weights, minibatch order, torch's random numbers and errors.
         schedule: Default: `Schedule()`.
-        validation: Share of the episodes that are kept for validation.
+        validation: Share of the episodes that is held out for validation.
         name: Name of the files; default the module's class and the repair's kind.
-        folder: Gets `<name>-<seed>.safetensors` and its record `.json`, each whole or absent.
+        folder: Folder for `<name>-<seed>.safetensors` and its record `.json`, each whole or absent.
 
     Raises:
-        UserError: Something does not fit together, or the loss left the finite numbers.
+        UserError: Arguments do not fit together, or the loss is no longer finite.
     """
     import torch
 
@@ -104,10 +105,10 @@ def fit(
     repairs = (repair,) if isinstance(repair, Repair) else tuple(repair)
     repairs = tuple(part.against(data.interface, data.dt_s, data.readers) for part in repairs)
     with torch.random.fork_rng():
-        # The module's own code draws from torch's global state (initialisation, dropout): it is the
-        # fit's own in here, and the caller's again behind.
-        drawn = key("repairs/torch", "fit", seed) % 2**63
-        torch.manual_seed(drawn)
+        # The module's own code draws from torch's global state (initialisation, dropout), which is
+        # the fit's in this block and the caller's again afterwards.
+        torch_seed = key("repairs/torch", "fit", seed) % 2**63
+        torch.manual_seed(torch_seed)
         net = copy.deepcopy(module) if isinstance(module, torch.nn.Module) else module()
         if not isinstance(net, torch.nn.Module):
             raise UserError(
@@ -115,7 +116,7 @@ def fit(
             )
         if not parameter_count(net):
             raise UserError(f"fit: {_name_of(net)} has no parameters to fit")
-        torch.manual_seed(drawn)  # also where the module was not made here
+        torch.manual_seed(torch_seed)  # the same state whether or not the module was made here
         kinds = (part.kind.replace("_", "-") for part in repairs)
         task = _WindowTask(net, data, loss, repairs, seed, schedule or Schedule(), validation)
         task.name = name or "+".join((type(net).__name__.lower(), *kinds))
@@ -138,14 +139,16 @@ def evaluate(
     loss: LossFunction = mean_squared_error,
     faults: Iterable[Fault | str] = (),
 ) -> float:
-    """Return the mean loss of a fitted module over all windows, under faults as an audit has them.
+    """Return the mean loss of a fitted module over all windows, under faults as in an audit.
 
-    What it was fitted without stays withheld. Raises `UserError` as `fit`.
+    Channels withheld in the fit stay withheld. Raises `UserError` as `fit`.
     """
     repairs = fitted.record.repairs
     resolved = [
         fault
-        for parts in understood((*faults, *kept(repairs)), data.interface, data.dt_s)
+        for parts in parsed_by_cause(
+            (*faults, *withheld_faults(repairs)), data.interface, data.dt_s
+        )
         for fault in resolve(parts, data.interface, data.readers)
     ]
     task = _WindowTask(
@@ -155,13 +158,13 @@ def evaluate(
 
 
 def load(module: nn.Module, path: Path | str) -> Fit:
-    """Return a fit from its files, filled in; `UserError` where they do not fit."""
+    """Return a fit with the weights of its files; `UserError` where they do not fit."""
     record = fill(module, Path(path), FitRecord)
     return Fit(module.eval(), record, Path(path))
 
 
 class _WindowTask(FitTask):
-    """Windows as samples, with a delivery through the taps for each minibatch."""
+    """Fit of windows, delivered through the taps for each minibatch."""
 
     order_key = "repairs"
     initial_sha256: str
@@ -193,7 +196,7 @@ class _WindowTask(FitTask):
         self.taps: tuple[TapCount, ...] = ()
         self._data, self._loss, self._epoch = data, loss, 0
         self._faults: list[Any] = [fault for repair in repairs for fault in repair.faults]
-        self._kept = kept(repairs)
+        self._withheld = withheld_faults(repairs)
         read = {port.channel for port in data.ports}
         self._readings = {name: tensor(v) for name, v in data.readings.items() if name in read}
         self._targets = {name: tensor(v) for name, v in named(self.host_targets).items()}
@@ -206,7 +209,7 @@ class _WindowTask(FitTask):
 
     @override
     def loss(self, net: nn.Module, index: LongTensor) -> Tensor:
-        value, counts = self._of(net, self.training[index.numpy()], self._faults, self._epoch)
+        value, counts = self._loss_of(net, self.training[index.numpy()], self._faults, self._epoch)
         self.taps = added((*self.taps, *counts))
         return value
 
@@ -214,7 +217,7 @@ class _WindowTask(FitTask):
     def validate(self, net: nn.Module) -> Mapping[str, float]:
         if not len(self._held_out):
             return {}
-        cases = {"correct": self._kept, "perturbed": self._faults}
+        cases = {"correct": self._withheld, "perturbed": self._faults}
         return {name: self.mean_loss(net, self._held_out, faults) for name, faults in cases.items()}
 
     def record(self, net: nn.Module, history: History) -> FitRecord:
@@ -248,10 +251,10 @@ class _WindowTask(FitTask):
         net.eval()
         with torch.no_grad():
             for part in np.split(index, range(size, len(index), size)):
-                total += self._of(net, part, faults, VALIDATION)[0].item() * len(part)
+                total += self._loss_of(net, part, faults, VALIDATION)[0].item() * len(part)
         return total / len(index)
 
-    def _of(
+    def _loss_of(
         self, net: nn.Module, part: np.ndarray, faults: Iterable[Any], epoch: int
     ) -> tuple[Tensor, tuple[TapCount, ...]]:
         import torch

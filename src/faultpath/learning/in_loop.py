@@ -1,4 +1,4 @@
-"""Repaired modules in a loop: they read in a trial what they read in the fit."""
+"""Repaired modules in a loop, which read the same channels as in their fit."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from typing_extensions import override
 
-from faultpath.core.arrays import HostArray, is_array, namespace, place, to_numpy
+from faultpath.core.arrays import HostArray, is_array, match_device, namespace, to_numpy
 from faultpath.core.errors import UserError
 from faultpath.faults import ALL, Erase, Fault
 from faultpath.interface import Interface
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
 
 
 class Learned(Module):
-    """A fitted torch module in the loop: one output of the last steps of what its ports got.
+    """A fitted torch module in the loop: its output at each step, from the last steps' readings.
 
-    At each step `forward` gets what it got in the fit, `inputs["gain", "model"]` of `[1, T, ...]`,
-    float32, the present last; before step T the first step fills in. Scenes go one by one, because
-    torch may round a scene differently in another batch.
+    At each step `forward` gets inputs as in the fit, `inputs["gain", "model"]` of `[1, T, ...]`,
+    float32, the present last; before step T the first step fills in. Scenes are computed one by
+    one, because torch may round a scene differently in another batch.
 
     Args:
         name: Name under which the interface lists its places.
         net: The fitted module; it returns `[n, ...]`.
-        writes: The source that its output is.
+        writes: Source that it writes.
         reads: Ports of this step.
         reads_past: Ports of the step before.
         steps: T; `None` where the fit's windows had no steps.
@@ -55,7 +55,7 @@ class Learned(Module):
         present = {port: to_numpy(inputs[port]).astype(np.float32) for port in inputs}
         length = self._steps or 1
         past = (*(memory or (present,) * (length - 1)), present)
-        kept = past[1 - length :] if length > 1 else ()
+        history = past[1 - length :] if length > 1 else ()
         windows = {port: np.stack([step[port] for step in past], axis=1) for port in present}
         if self._steps is None:
             windows = {port: value[:, 0] for port, value in windows.items()}
@@ -63,15 +63,15 @@ class Learned(Module):
         scenes = range(len(next(iter(present.values()))))
         with torch.no_grad():
             rows = [self._net({p: v[i : i + 1] for p, v in tensors.items()})[0] for i in scenes]
-        return {self.writes[0]: np.stack([row.numpy() for row in rows]).astype(float)}, kept
+        return {self.writes[0]: np.stack([row.numpy() for row in rows]).astype(float)}, history
 
 
 def withheld(module: Module, repair: Repair, interface: Interface) -> Module:
     """Return a module that gets a withheld channel's neutral value without reading the channel.
 
-    It has no tap there, so that no fault on the channel reaches it: this is the variant to audit.
-    `interface` gives the erasure default where the repair names no value. Raises `UserError` where
-    the repair withholds nothing that the module reads.
+    It has no tap there, so no fault on the channel reaches it: this is the variant to audit. If the
+    repair has no value, the erasure default of `interface` is used. Raises `UserError` where the
+    repair withholds nothing that the module reads.
     """
     values: dict[Port, HostArray] = {}
     for fault in repair.faults:
@@ -92,7 +92,7 @@ def withheld(module: Module, repair: Repair, interface: Interface) -> Module:
 
 
 class _Withheld(Module):
-    """A module with fewer ports than the one in it."""
+    """Wraps a module and supplies some of its ports with constants."""
 
     def __init__(self, inner: Module, values: Mapping[Port, HostArray]) -> None:
         self.name, self.writes, self.truths = inner.name, inner.writes, inner.truths
@@ -121,7 +121,7 @@ class _Withheld(Module):
         floating = namespace(sample).isdtype(sample.dtype, "real floating")
         for port, value in self._values.items():
             rows = np.array(np.broadcast_to(value, (scenes, *value.shape)), dtype=float)
-            readings[port] = place(rows, sample, sample.dtype if floating else None)
+            readings[port] = match_device(rows, sample, sample.dtype if floating else None)
         filled = Inputs(
             inputs.module, inputs.step, readings, truths, inputs.running, inputs.at_read
         )

@@ -1,7 +1,7 @@
 """The fitting loop: epochs of minibatches, resumable to the bit.
 
 Laws. The order of minibatches depends on the task's `order_key` and its seed only. A fit that was
-killed and run again with its journal ends with the same weights as one that was not.
+killed and resumed from its journal ends with the same weights as an uninterrupted one.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class Diverged(UserError):
-    """A fit left the finite numbers; a journal keeps the state after its last good epoch."""
+    """A fit is no longer finite; a journal keeps the state after its last good epoch."""
 
 
 @dataclass(frozen=True)
@@ -35,9 +35,9 @@ class FitProgress:
     """Progress of a fit."""
 
     epoch: int
-    """Epoch at work, counted from 0."""
+    """Present epoch, counted from 0."""
     fraction: float
-    """Part of all minibatches that is done."""
+    """Finished part of all minibatches."""
     loss: float
     """Loss of the last minibatch."""
 
@@ -54,9 +54,9 @@ class History:
 class FitTask(ABC):
     """The samples of a fit and their loss.
 
-    For each epoch `begin_epoch`, the minibatches' `loss` and `validate` are called. A fit that was
-    cut short goes on at a later epoch in a new process, so `begin_epoch` and `loss` may depend on
-    the seed, the epoch and the index, and on nothing that earlier epochs left in the task.
+    For each epoch `begin_epoch`, the minibatches' `loss` and `validate` are called. An interrupted
+    fit resumes at a later epoch in a new process, so `begin_epoch` and `loss` may depend on seed,
+    epoch and index, but not on state that earlier epochs left in the task.
     """
 
     name: str
@@ -88,13 +88,13 @@ class FitTask(ABC):
 class Journal:
     """State of an unfinished fit: one file, written whole after every epoch.
 
-    It holds everything that the next epoch depends on. Draws are addressed by the epoch, so that
-    there is no random state to keep.
+    It holds everything on which the next epoch depends. Random numbers are addressed by the epoch,
+    so there is no random state to store.
     """
 
     path: Path
     recipe: Mapping[str, Any]
-    """JSON values that decide the fit: a journal of another recipe is not used."""
+    """JSON values on which the fit depends; a journal of another recipe is not used."""
 
     def write(self, net: nn.Module, optimiser: Optimizer, history: History) -> None:
         """Write weights, moments and step counts of the optimiser, and the history."""
@@ -106,7 +106,7 @@ class Journal:
     def read(self, net: nn.Module, optimiser: Optimizer) -> History | None:
         """Fill the net and the optimiser from the file and return the history.
 
-        Returns None, and leaves both alone, when the file is damaged or of another recipe.
+        Returns None and changes neither when the file is damaged or of another recipe.
         """
         try:
             note, state = read_tensors(self.path)
@@ -135,9 +135,9 @@ def run(
     progress: Callable[[FitProgress], None] | None = None,
     notice: Callable[[str], None] | None = None,
 ) -> History:
-    """Fit all epochs, or those after the last one that the journal holds.
+    """Fit all epochs, or those after the journal's last one.
 
-    `progress` is called after each minibatch, `notice` with a sentence where a journal is not used.
+    `progress` is called after each minibatch, `notice` with a sentence if the journal is not used.
     Raises `Diverged` for a loss, weights or metrics that are not finite.
     """
     import torch
@@ -193,7 +193,7 @@ def _train(
     epoch: int,
     progress: Callable[[FitProgress], None] | None,
 ) -> float:
-    """Fit one epoch and return its mean loss, or at once a loss that is not finite."""
+    """Fit one epoch and return its mean loss; stop at a loss that is not finite and return that."""
     from torch import nn
 
     schedule, total = task.schedule, 0.0
@@ -218,7 +218,7 @@ def _train(
 
 
 def minibatches(task: FitTask, epoch: int) -> tuple[LongTensor, ...]:
-    """Cut a permutation of the samples; its address names the order, the seed and the epoch."""
+    """Return a permutation of the samples in minibatches, addressed by order, seed and epoch."""
     import torch
 
     draws = generator(task.order_key, "minibatches", task.seed, epoch)

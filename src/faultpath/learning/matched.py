@@ -1,4 +1,4 @@
-"""Whether two fits differ in the repair alone: every other difference, in a sentence."""
+"""Checks whether two fits differ only in the repair, and lists every other difference."""
 
 from collections.abc import Iterator
 from math import isclose
@@ -11,9 +11,9 @@ from faultpath.learning.fitting import Fit
 from faultpath.learning.model_card import Data, FitRecord, read_card
 
 _SAME_LOSS = 1e-4
-"""Relative difference of a first loss that machines may cause and another computation does not."""
+"""Relative difference of first losses between machines; another computation differs by more."""
 
-Recorded: TypeAlias = Fit | FitRecord | Path | str
+FitSource: TypeAlias = Fit | FitRecord | Path | str
 """A fit, its record, or the path of its weights."""
 
 
@@ -25,7 +25,7 @@ class Comparison(Frozen):
     repair: str
     same_repair: bool
     differences: tuple[str, ...]
-    """Beside the repair, a sentence each."""
+    """Differences other than the repair, a sentence each."""
 
     @property
     def matched(self) -> bool:
@@ -41,7 +41,7 @@ class Comparison(Frozen):
         return f"matched in all but the repair ({self.repair}{against})"
 
 
-def matched(baseline: Recorded, repair: Recorded) -> Comparison:
+def matched(baseline: FitSource, repair: FitSource) -> Comparison:
     """Compare two fits by their records: fits, records, or paths of weights files.
 
     `UserError` for a record that is missing or damaged.
@@ -66,7 +66,7 @@ def matched(baseline: Recorded, repair: Recorded) -> Comparison:
         name = next(n for n in names if mine.tensors.get(n) != theirs.tensors.get(n))
         before, after = (side.tensors.get(name, "missing") for side in (mine, theirs))
         compare("Architecture:", f"'{name}' is {before}", after)
-    else:  # only then can initial weights be compared
+    else:  # initial weights can be compared only with the same tensors
         if mine.structure != theirs.structure:
             lines = zip(mine.structure.splitlines(), theirs.structure.splitlines(), strict=False)
             pairs = ((a.strip(), b.strip()) for a, b in lines if a != b)
@@ -96,7 +96,7 @@ def matched(baseline: Recorded, repair: Recorded) -> Comparison:
     )
 
 
-def _record(fit: Recorded) -> FitRecord:
+def _record(fit: FitSource) -> FitRecord:
     if isinstance(fit, FitRecord):
         return fit
     return fit.record if isinstance(fit, Fit) else read_card(Path(fit), FitRecord)

@@ -1,4 +1,4 @@
-"""A fitted module in files: its weights, and beside them the card that says where they come from.
+"""Files of a fitted module: its weights, and a card with their origin.
 
 A card is read without torch. Weights are safetensors: reading them runs no code.
 """
@@ -32,7 +32,7 @@ class Schedule(Frozen, allow_inf_nan=False):
 
     epochs: int = Field(default=10, ge=1, le=90_000)
     batch_size: int = Field(default=64, ge=1)
-    """Samples in a minibatch; the last one of an epoch takes what is left."""
+    """Samples of a minibatch; the last one of an epoch may have fewer."""
     learning_rate: float = Field(default=1e-3, gt=0)
     optimiser: Literal["adam", "adamw"] = "adamw"
     weight_decay: float = Field(default=0.01, ge=0)
@@ -51,12 +51,12 @@ class Card(Frozen):
     name: str
     seed: int
     parameters: int
-    """Numbers that were fitted."""
+    """Number of fitted parameters."""
     schedule: Schedule
     initial_sha256: str
     """Digest of the weights before the first step."""
     first_loss: float
-    """Loss of the first minibatch before the first step: it stands for the code."""
+    """Loss of the first minibatch before the first step, by which the code can be compared."""
     training_loss: tuple[float, ...]
     """Mean over the samples of each epoch."""
     validation: tuple[dict[str, float], ...]
@@ -71,11 +71,11 @@ class Card(Frozen):
 
 
 class Architecture(Frozen):
-    """A module before it has weights."""
+    """Structure of a module, without its weights."""
 
     name: str
     structure: str
-    """Its parts as torch shows them, and the numbers that each holds."""
+    """Its parts as torch prints them, and the constants of each."""
     tensors: dict[str, str]
     """Type and shape of each parameter and buffer."""
 
@@ -83,13 +83,13 @@ class Architecture(Frozen):
     def of(cls, net: nn.Module) -> Self:
         """Return the architecture of a module."""
         structure = [str(net)]
-        for place, part in net.named_modules():
+        for name_in_net, part in net.named_modules():
             plain = {
                 name: value
                 for name, value in sorted(vars(part).items())
                 if isinstance(value, bool | int | float | str | tuple) and name != "training"
             }
-            structure.append(f"{place or type(net).__name__}: {plain}")
+            structure.append(f"{name_in_net or type(net).__name__}: {plain}")
         tensors = {
             name: f"{str(value.dtype).removeprefix('torch.')} {list(value.shape)}"
             for name, value in net.state_dict().items()
@@ -114,7 +114,7 @@ class Data(Frozen):
 
 
 class Machine(Frozen):
-    """The software and device that computed a fit: they decide the last bits."""
+    """Software and device of a fit, on which the last bits depend."""
 
     torch: str
     faultpath: str
@@ -137,22 +137,22 @@ class Machine(Frozen):
 
 
 class FitRecord(Card):
-    """The card of a fit of windows, and what such a fit says of itself beyond it.
+    """The card of a fit of windows.
 
     Its first loss is that of the first minibatch under correct inputs. `validation` is the loss on
-    the other side of the split, under correct inputs and perturbed as in training with errors that
-    stay the same; empty without validation windows.
+    the validation windows, under correct inputs and perturbed as in training, with the same errors
+    in every epoch; empty without such windows.
     """
 
     format: Literal["faultpath-fit/2"] = "faultpath-fit/2"
     repairs: tuple[Repair, ...]
-    """As they act, every reader and default spelled out; none for a baseline."""
+    """Repairs with all readers and defaults spelled out; none for a baseline."""
     reads: tuple[str, ...]
     """The taps `channel -> module.place` of the module."""
     architecture: Architecture
     data: Data
     loss: str
-    """Name of what was minimised."""
+    """Name of the loss function."""
     order_sha256: tuple[str, ...]
     """Digest of the order of the training windows in each epoch."""
     taps: tuple[TapCount, ...]
@@ -170,13 +170,13 @@ CardKind = TypeVar("CardKind", bound=Card)
 
 def read_card(path: Path, kind: type[CardKind]) -> CardKind:
     """Read the card beside a weights file; `UserError` when it is missing or damaged."""
-    place = path.with_suffix(".json")
+    card_path = path.with_suffix(".json")
     try:
-        return model_of(contents(place), kind)
+        return model_of(contents(card_path), kind)
     except (OSError, Misread) as error:
         reason = error.strerror if isinstance(error, OSError) else "it is no card of a fit"
         raise UserError(
-            f"cannot read {place} ({reason}): copy it again or fit the model again"
+            f"cannot read {card_path} ({reason}): copy it again or fit the model again"
         ) from error
 
 
@@ -221,10 +221,10 @@ def fill(net: nn.Module, path: Path, kind: type[CardKind]) -> CardKind:
 
 
 def weights_sha256(net: nn.Module) -> str:
-    """Return the digest of the file that the weights would make."""
+    """Return the digest of the weights' file."""
     return sha256(encoded(net.state_dict())).hexdigest()
 
 
 def parameter_count(net: nn.Module) -> int:
-    """Return how many numbers are fitted."""
+    """Return the number of fitted parameters."""
     return sum(weight.numel() for weight in net.parameters() if weight.requires_grad)

@@ -15,11 +15,11 @@ from faultpath.faults import ALL, Bias, Erase, Fault, Noise, parse_fault, resolv
 from faultpath.interface import Interface
 
 Persistence: TypeAlias = Literal["window", "step"] | float
-"""How long a drawn error lasts: one draw a window, one a step, or a time constant in seconds."""
+"""Persistence of a random error: one draw a window, one a step, or a time constant in seconds."""
 
 
 class Repair(Frozen):
-    """A change to a fit, which its baseline lacks (paper, "Propose Repairs, Then Audit").
+    """A change to a fit that its baseline does not have (paper, "Propose Repairs, Then Audit").
 
     Made by `uncertainty_training`, `withholding` and `reconstruction`.
     """
@@ -32,7 +32,7 @@ class Repair(Frozen):
 
     @property
     def words(self) -> str:
-        """The repair in a few words."""
+        """Description of the repair."""
         if self.kind == "reconstruction":
             return f"reconstruction of {self.channel}"
         descriptions: list[str] = []
@@ -44,9 +44,9 @@ class Repair(Frozen):
         return f"{self.kind.replace('_', ' ')}: {'; '.join(descriptions)}"
 
     def against(self, interface: Interface, dt_s: float, present: Collection[str]) -> "Repair":
-        """Return the repair as it acts on the readers that are `present`, all spelled out.
+        """Return the repair with all readers spelled out, of those that are `present`.
 
-        Raises `UserError` where it does not fit, or acts on none of them.
+        Raises `UserError` where it does not fit, or reaches none of them.
         """
         if self.channel is not None:
             interface.channel(self.channel)
@@ -54,14 +54,16 @@ class Repair(Frozen):
             for fault in self.faults:
                 _check_value(fault, interface)
         reached: list[Fault] = []
-        for faults in understood(self.faults, interface, dt_s):
+        for faults in parsed_by_cause(self.faults, interface, dt_s):
             reached += resolve(faults, interface, present)
         return self.model_copy(update={"faults": tuple(reached)})
 
 
 def _check_value(fault: Fault | str, interface: Interface) -> None:
-    """Raise `UserError` for a neutral value that has not the shape of the reading: it would be laid
-    along a reading, and nothing says its shape in a loop."""
+    """Raise `UserError` unless a neutral value has the reading's shape.
+
+    In a fit it could be broadcast, but a loop has no reading to take the shape from.
+    """
     if isinstance(fault, str) or not isinstance(fault.intervention, Erase):
         return
     shape = interface.source(interface.channel(fault.channel).sources[0]).shape
@@ -73,11 +75,13 @@ def _check_value(fault: Fault | str, interface: Interface) -> None:
         )
 
 
-def understood(
+def parsed_by_cause(
     faults: Iterable[Fault | str], interface: Interface, dt_s: float
 ) -> Iterator[tuple[Fault, ...]]:
-    """Yield the faults of each text, parsed as `--fault` is, and those of one cause that follow
-    each other; `UserError` for one that does not fit."""
+    """Yield the faults of each text, parsed like `--fault`, and adjacent faults of one cause.
+
+    Raises `UserError` for a fault that does not fit.
+    """
     for cause, group in groupby(faults, lambda f: None if isinstance(f, str) else f.drawn_from):
         if cause is None:
             for text in group:
@@ -86,20 +90,20 @@ def understood(
             yield tuple(fault for fault in group if isinstance(fault, Fault))
 
 
-def kept(repairs: Iterable[Repair]) -> tuple[Fault | str, ...]:
-    """Return what stays at the taps after a fit: what is withheld."""
+def withheld_faults(repairs: Iterable[Repair]) -> tuple[Fault | str, ...]:
+    """Return the faults that withhold a channel, which stay at the taps after the fit."""
     return tuple(
         fault for repair in repairs if repair.kind == "withholding" for fault in repair.faults
     )
 
 
 def uncertainty_training(*q_eps: Fault | str | tuple[Fault, ...]) -> Repair:
-    """Return the repair that draws errors anew for each window and epoch of a fit.
+    """Return the repair that draws new errors for each window and epoch of a fit.
 
     Samples and targets stay as they are (paper, Eq. 1). `q_eps` are the faults of an audit, as
-    objects or as text: `"mass:uniform_scale=0.2"` is the paper's. What they draw once a scene is
-    drawn once a window; a window's first step is step 0, so onset and drift go by
-    the steps of the window. `errors` makes the usual Gaussian ones.
+    objects or as text: `"mass:uniform_scale=0.2"` is the paper's. Errors drawn once a scene are
+    drawn once a window. Onset and drift count a window's own steps from 0. `errors` makes the usual
+    Gaussian ones.
     """
     if not q_eps:
         raise UserError("uncertainty_training: name at least one error, or leave the repair out")
@@ -120,8 +124,8 @@ def errors(
             unless `relative`, in its unit.
         persistence: `"window"` for one draw a window (in an audit: a scene), `"step"` for one a
             step, or the time constant in seconds of an Ornstein-Uhlenbeck process.
-        dependence: Correlation between the errors of any two channels, from 0 to 1. Or channel to
-            its loading from -1 to 1: the correlation of two is the product of theirs.
+        dependence: Correlation between the errors of any two channels, from 0 to 1; or channel to
+            its loading from -1 to 1, of which a correlation is the product of two.
 
     Raises `UserError` for a number out of its range and a loading of another channel.
     """
@@ -165,10 +169,10 @@ def errors(
 def withholding(
     channel: str, readers: str | Iterable[str] = ALL, value: Constant | None = None
 ) -> Repair:
-    """Return the repair in which readers never get a channel but its neutral value.
+    """Return the repair in which readers get a channel's neutral value instead of the channel.
 
-    The taps put it in place of the reading in every window of a fit; in a loop `withheld` does, in
-    a module that no longer reads the channel.
+    In a fit the taps replace every reading by it; in a loop `withheld` supplies it to a module that
+    no longer reads the channel.
 
     Args:
         channel: Channel to withhold.
@@ -181,9 +185,9 @@ def withholding(
 
 
 def reconstruction(channel: str) -> Repair:
-    """Return the repair whose fit learns to estimate a channel from what its module reads.
+    """Return the repair whose fit learns to estimate a channel from its module's inputs.
 
-    The target of each window is the channel's correct reading; what the module reads may be
-    perturbed by a further repair. The downstream modules stay as they are.
+    The target of each window is the channel's correct reading; a further repair may perturb the
+    inputs. Downstream modules stay as they are.
     """
     return Repair(kind="reconstruction", channel=channel)

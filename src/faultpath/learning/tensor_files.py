@@ -1,4 +1,4 @@
-"""Tensors in a file, with a note beside them: safetensors, so that reading one runs no code."""
+"""Files of tensors with a note: safetensors, so that reading one runs no code."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from faultpath.core.text import extra
 if TYPE_CHECKING:
     from torch import Tensor
 
-_ENTRY = "note"  # one entry only: the order of several in the file is not fixed
+_ENTRY = "note"  # only one entry, since the order of several in a file is not fixed
 
 
 def encoded(tensors: Mapping[str, Tensor], note: object = None) -> bytes:
-    """Return a file of tensors and a JSON value; its bytes depend on these alone."""
+    """Return the bytes of a file of tensors and a JSON value, which depend on these alone."""
     from torch import contiguous_format as rows  # safetensors takes no other order
 
     own = {name: value.detach().cpu().clone(memory_format=rows) for name, value in tensors.items()}

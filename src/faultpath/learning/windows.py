@@ -1,4 +1,4 @@
-"""Windows of readings that a module is fitted to, delivered by the taps of its interface."""
+"""Windows of readings for fitting a module, delivered by the taps of its interface."""
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -18,30 +18,30 @@ from faultpath.learning.repair import Repair
 from faultpath.loop import Port, Reading, TapCount, Taps
 
 _EPOCHS = 100_000
-"""Seeds of the faults' random numbers lie this far apart from one seed of a fit to the next."""
+"""Distance between the seeds of the faults' random numbers for two adjacent seeds of a fit."""
 VALIDATION = _EPOCHS - 1
-"""The epoch whose errors validation gets."""
+"""Epoch whose errors validation uses."""
 
 Targets = HostArray | Mapping[str, HostArray]
 
 
 @dataclass(frozen=True, eq=False)
 class Windows:
-    """Windows, or whole episodes, of one length: what a module reads in them, and its targets.
+    """Windows, or whole episodes, of one length: a module's readings in them, and its targets.
 
     Args:
         interface: Interface of the module's system; its taps deliver.
-        reader: The module, or the readers `module.place` of one or several, that is fitted.
-        readings: By channel, what the source holds: `[N, T, ...]` step by step in order, or
-            `[N, ...]` for what is constant in a window. Without steps all are `[N, ...]`.
-        targets: Handed to the loss, `[N, ...]` or such by name; a reconstruction needs none.
+        reader: The module to fit, or its readers `module.place`, or those of several modules.
+        readings: Values of the source by channel: `[N, T, ...]` step by step, or `[N, ...]` if they
+            are constant in a window. Without steps all are `[N, ...]`.
+        targets: Argument of the loss, `[N, ...]` or such by name; a reconstruction needs none.
         dt_s: Length of a step, s.
         ids: Name of each window, which addresses its random numbers.
-        episodes: Name of the episode that each window is cut from: an episode is on one side of
-            the split. Default: every window is one.
+        episodes: Episode of each window; the split into training and validation does not divide
+            an episode. Default: every window is one.
 
     Raises:
-        UserError: Something does not fit together.
+        UserError: Arguments do not fit together.
     """
 
     interface: Interface
@@ -94,18 +94,18 @@ class Windows:
 
     @cached_property
     def readers(self) -> tuple[str, ...]:
-        """The reader spelled out, `module.place`."""
+        """Readers `module.place` of the fitted module."""
         names = (self.reader,) if isinstance(self.reader, str) else tuple(self.reader)
         known = dict.fromkeys(c for channel in self.interface.channels for c in channel.readers)
         for name in names:
             if not any(name in (reader, module_of(reader)) for reader in known):
-                places = {*known, *map(module_of, known)}
-                raise UserError(f"windows: {unknown('reader', name, places)}")
+                names_known = {*known, *map(module_of, known)}
+                raise UserError(f"windows: {unknown('reader', name, names_known)}")
         return tuple(c for c in known if c in names or module_of(c) in names)
 
     @cached_property
     def ports(self) -> Mapping[Port, str]:
-        """Ports at which the reader reads, with the reader's full name."""
+        """Ports of the fitted module, with their readers' full names."""
         ports: dict[Port, str] = {}
         for channel in self.interface.channels:
             for reader in channel.readers:
@@ -126,22 +126,22 @@ class Windows:
 
     @cached_property
     def steps(self) -> int | None:
-        """Steps of a window; `None` where nothing has any."""
+        """Steps of a window; `None` if readings have none."""
         for name, value in self.readings.items():
             if value.ndim == len(self.shape(name)) + 2:
                 return int(value.shape[1])
         return None
 
     def split(self, validation: float) -> tuple[HostArray, HostArray]:
-        """Return the places of the windows for training and of those for validation, in order.
+        """Return the indices of the windows for training and for validation.
 
-        The name of an episode decides alone, whatever else there is.
+        The side of an episode depends on its name alone.
         """
         held_out = validates(self.episodes, validation)
         return np.flatnonzero(~held_out), np.flatnonzero(held_out)
 
     def learned(self, repairs: Iterable[Repair]) -> Targets:
-        """Return what the loss gets; for a reconstruction the correct readings of its channel."""
+        """Return the targets; for a reconstruction the correct readings of its channel."""
         channels = [repair.channel for repair in repairs if repair.channel is not None]
         if len(channels) > 1:
             raise UserError(f"fit: a module reconstructs one channel, not {listed(channels)}")
@@ -164,7 +164,7 @@ class Windows:
         return self.readings[channels[0]]
 
     def digested(self, targets: Targets, training: HostArray) -> Data:
-        """Return digests of what is fitted to, with these windows on the training side."""
+        """Return digests of the data, with these windows on the training side."""
         return Data(
             readings_sha256={
                 name: sha256_of(self.readings[name]) for name in sorted(self.readings)
@@ -179,12 +179,12 @@ class Windows:
         )
 
     def names_sha256(self, index: HostArray) -> str:
-        """Return a digest of the names of some windows, in this order."""
+        """Return a digest of some windows' names, in this order."""
         return sha256("\n".join(self.ids[int(i)] for i in index).encode()).hexdigest()
 
 
 def validates(episodes: Sequence[str], share: float) -> HostArray:
-    """Return whether each window is one of validation, by the name of its episode."""
+    """Return which windows are for validation, by the names of their episodes."""
     draws: dict[str, float] = {}
     for name in dict.fromkeys(episodes):
         digest = blake2b(name.encode(), digest_size=8, person=b"validation").digest()
@@ -200,31 +200,31 @@ def delivered(
     seed: int,
     epoch: int,
 ) -> tuple[dict[Port, Array], tuple[TapCount, ...]]:
-    """Return what each port gets of some windows in an epoch, and what the taps did.
+    """Return the deliveries at each port for some windows in an epoch, and the taps' counts.
 
-    A window is a scene of the taps and draws by its name, the seed and the epoch: neither its
-    minibatch nor its place there matters. `readings` hold the rows `index` of the windows'.
-    Arrays are `[n, T, ...]`, or `[n, ...]` where windows have no steps. Raises `NotDelivered`
-    where a fault missed a reader that it names.
+    For the taps a window is a scene. Its random numbers depend on its name, the seed and the epoch,
+    not on its minibatch. `readings` hold the rows `index` of the windows'. Arrays are
+    `[n, T, ...]`, or `[n, ...]` where windows have no steps. Raises `NotDelivered` where a fault
+    missed a reader that it names.
     """
     steps, interface = windows.steps, windows.interface
     ids = tuple(windows.ids[i] for i in index)
     taps = window_taps(interface, faults, ids, windows.dt_s, seed, epoch, windows.readers)
     ports = windows.ports
-    got: dict[Port, list[Array]] = {port: [] for port in ports}
+    values: dict[Port, list[Array]] = {port: [] for port in ports}
     for step in range(steps or 1):
         for port, reader in ports.items():
-            value = readings[port.channel]
-            if value.ndim == len(windows.shape(port.channel)) + 2:
-                value = value[:, step]
-            reading = Reading(value, taps.bindings[port.channel], step)
-            got[port].append(taps.deliver(port.channel, reader, reading, step))
+            source = readings[port.channel]
+            if source.ndim == len(windows.shape(port.channel)) + 2:
+                source = source[:, step]
+            reading = Reading(source, taps.bindings[port.channel], step)
+            values[port].append(taps.deliver(port.channel, reader, reading, step))
     taps.verify(last_step=(steps or 1) - 1)
     stacked = {
-        port: values[0] if steps is None else namespace(values[0]).stack(values, axis=1)
-        for port, values in got.items()
+        port: by_step[0] if steps is None else namespace(by_step[0]).stack(by_step, axis=1)
+        for port, by_step in values.items()
     }
-    return stacked, taps.receipts().counts()
+    return stacked, taps.delivery_log().counts()
 
 
 def window_taps(
@@ -236,7 +236,7 @@ def window_taps(
     epoch: int,
     readers: Collection[str],
 ) -> Taps:
-    """Return taps for which windows are scenes, with draws of their own in each epoch of a fit."""
+    """Return taps for windows as scenes, with other random numbers in each epoch of a fit."""
     return Taps(
         interface,
         faults,
@@ -255,7 +255,7 @@ def sha256_of(array: HostArray) -> str:
 
 
 def named(targets: Targets | None) -> dict[str, HostArray]:
-    """Return targets by name, `target` where there is but one."""
+    """Return targets by name; a single one is called `target`."""
     if isinstance(targets, Mapping):
         return {name: np.asarray(value) for name, value in targets.items()}
     return {} if targets is None else {"target": np.asarray(targets)}

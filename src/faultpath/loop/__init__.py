@@ -1,5 +1,6 @@
 """The closed loop, executed: modules declare ports, and every edge between them is a tap."""
 
+from faultpath.loop.delivery_log import DeliveryLog, TapCount, added
 from faultpath.loop.graph import graph, interface_of
 from faultpath.loop.loop import Deliverer, Instant, Loop
 from faultpath.loop.parts import (
@@ -28,7 +29,6 @@ from faultpath.loop.reading import (
     UndeclaredReader,
     WrittenTo,
 )
-from faultpath.loop.receipts import Receipts, TapCount, added
 from faultpath.loop.tap import DeliveryListener, Tap
 from faultpath.loop.taps import Taps
 
@@ -36,6 +36,7 @@ __all__ = [
     "Batch",
     "Deliverer",
     "DeliveryListener",
+    "DeliveryLog",
     "FaultedElsewhere",
     "Graph",
     "IllegalRead",
@@ -54,7 +55,6 @@ __all__ = [
     "Progress",
     "Query",
     "Reading",
-    "Receipts",
     "State",
     "Tap",
     "TapCount",

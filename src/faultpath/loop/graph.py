@@ -1,4 +1,4 @@
-"""From parts to an executable graph, and to the interface that follows from their ports."""
+"""The executable graph of parts, and the interface that follows from their ports."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -25,8 +25,8 @@ def graph(
         bindings: Channel to source, where it is not the channel's first source.
 
     Raises:
-        SystemMistake: A port or a source is not declared, a source is written twice or by nobody,
-            or modules wait for each other.
+        SystemMistake: A port or a source is not declared, a source has two writers or none, or
+            modules wait for each other.
     """
     bound = {channel.name: channel.sources[0] for channel in interface.channels}
     bound |= dict(bindings or {})
@@ -79,6 +79,7 @@ def _check_ports(
 def _ordered(
     modules: Sequence[Module], bound: Mapping[str, str], writers: Mapping[str, Module | Plant]
 ) -> tuple[Module, ...]:
+    # By identity, since parts may share a name.
     needed = {
         id(module): {id(writers[bound[port.channel]]) for port in module.reads}
         for module in modules
@@ -86,8 +87,8 @@ def _ordered(
     ordered: list[Module] = []
     waiting = list(modules)
     while waiting:
-        left = {id(module) for module in waiting}
-        ready = next((module for module in waiting if left.isdisjoint(needed[id(module)])), None)
+        pending = {id(module) for module in waiting}
+        ready = next((module for module in waiting if pending.isdisjoint(needed[id(module)])), None)
         if ready is None:
             names = " -> ".join(dict.fromkeys(module.name for module in waiting))
             raise SystemMistake(
@@ -100,17 +101,17 @@ def _ordered(
 
 
 def interface_of(facts: Path | str | Mapping[str, Any], parts: Iterable[Part]) -> Interface:
-    """Return the interface of facts about deployment and of the ports of parts.
+    """Return the interface that facts about deployment and the ports of parts make together.
 
-    The facts are sources, their provenance, uncertainty, latency and rate, channels and what feeds
-    them. Who reads a channel and who reconstructs a source follows from the parts.
+    The facts are sources, their provenance, uncertainty, latency and rate, and channels with their
+    sources. Readers and reconstructions follow from the parts.
 
     Args:
         facts: As `faultpath.interface.read_interface` takes it; channels need no readers.
         parts: The plant and the modules of all variants, in the order in which readers are shown.
 
     Raises:
-        UserError: The facts are no interface, or nobody reads a channel of it.
+        UserError: The facts are no interface, or one of its channels has no reader.
     """
     readers: dict[str, dict[str, None]] = {}
     writers: dict[str, str] = {}
@@ -118,4 +119,6 @@ def interface_of(facts: Path | str | Mapping[str, Any], parts: Iterable[Part]) -
         for port in sorted(part.ports):
             readers.setdefault(port.channel, {})[part.reader(port)] = None
         writers |= dict.fromkeys(part.writes, part.name)
-    return read_interface(facts, {name: tuple(of) for name, of in readers.items()}, writers)
+    return read_interface(
+        facts, {channel: tuple(names) for channel, names in readers.items()}, writers
+    )

@@ -9,21 +9,21 @@ from faultpath.core.arrays import Array
 from faultpath.loop.reading import IllegalRead, UndeclaredReader
 
 Memory: TypeAlias = Any
-"""Values that a module carries from step to step; opaque to everybody else."""
+"""Values that a module carries from step to step; opaque to all other code."""
 
 State: TypeAlias = Any
-"""Values that a plant carries from step to step; opaque to everybody else."""
+"""Values that a plant carries from step to step; opaque to all other code."""
 
 Outputs: TypeAlias = Mapping[str, Any]
-"""By source: an array `[B, ...]`, or a `faultpath.loop.Query` that is asked within the step."""
+"""By source: an array `[B, ...]`, or a `faultpath.loop.Query` to be called within the step."""
 
 
 class Port(NamedTuple):
     """A channel and the place in the module where it enters: one tap.
 
-    The same channel at two places is two ports, for a fault may reach one of them alone. A module
-    that runs others inside it names their places in full, `observer.flux`: they are readers of
-    their own.
+    A channel at two places makes two ports, so that a fault can reach one of them alone. A module
+    that runs other modules inside it names their places in full, `observer.flux`, because they are
+    readers of their own.
     """
 
     channel: str
@@ -53,23 +53,23 @@ class Inputs(dict[tuple[str, str], Any]):
         self.step = step
         """Control step, from 0."""
         self.running = running
-        """Which scenes still run, bool `[B]`, for modules that save work; `None`: all."""
+        """Which scenes still run, bool `[B]`, so that a module can skip the others; `None`: all."""
         self.at_read = at_read or {}
-        """Deliveries that happen only when a port is looked at."""
+        """Deliveries that happen only when a port is accessed."""
         self._truths = truths
 
     def __missing__(self, port: tuple[str, str]) -> Any:
         channel, place = port
         if deliver := self.at_read.get(Port(channel, place)):
-            self[port] = got = deliver()
-            return got
+            self[port] = value = deliver()
+            return value
         raise UndeclaredReader(
             f"{self._label} looked for channel '{channel}' at '{place}', a port that it "
             f"does not declare: add Port('{channel}', '{place}') to its reads"
         )
 
     def truth(self, name: str) -> Any:
-        """Return what the plant shows of its own state; `IllegalRead` for an undeclared one."""
+        """Return a truth that the plant shows; `IllegalRead` for an undeclared one."""
         if name not in self._truths:
             raise IllegalRead(
                 f"{self._label} looked for the plant's truth '{name}', which it does not "
@@ -93,16 +93,16 @@ class Part(ABC):
     """A part of a loop, which reads at ports."""
 
     name: str
-    """Name under which the interface lists its readers, `name.place`. Parts may share it: a fault
-    at that module then reaches them all."""
+    """Name under which the interface lists its readers, `name.place`. Parts may share one; a fault
+    at that module then reaches all of them."""
     reads: frozenset[Port] = frozenset()
-    """Ports that get what their source holds at this step."""
+    """Ports that get their source's value of this step."""
     reads_past: frozenset[Port] = frozenset()
-    """Ports that get what their source held one step before: this is what closes a cycle. At the
-    first step that is what the source's module gives as `before`."""
+    """Ports that get their source's value of the step before, which closes cycles. At the first
+    step they get `before` of the source's module."""
     at_read: frozenset[Port] = frozenset()
-    """Ports that get their reading only in steps in which it is looked at; then receipts count what
-    was read and not what was handed over."""
+    """Ports that get a reading only in steps in which the module accesses it, so that the delivery
+    log counts reads."""
 
     writes: tuple[str, ...] = ()
     """Sources of the interface that it produces at every step; a plant senses its sources."""
@@ -112,7 +112,7 @@ class Part(ABC):
 
     @property
     def ports(self) -> frozenset[Port]:
-        """All ports that it reads."""
+        """Ports of this step and of the step before."""
         return self.reads | self.reads_past
 
     def reader(self, port: Port) -> str:
@@ -123,14 +123,14 @@ class Part(ABC):
 class Module(Part):
     """A part of the controller: readings and memory in, sources and memory out.
 
-    It keeps nothing of its own from step to step, does not write into what it reads, and gives
-    each scene a result that does not depend on the other scenes of the batch. Random numbers come
+    It keeps no state outside its memory, does not write into its inputs, and gives each scene a
+    result that does not depend on the other scenes of the batch. Random numbers come
     from `faultpath.core.streams`, by scene, seed and step.
     """
 
     truths: tuple[str, ...] = ()
-    """Parts of the plant's own state that it takes past all taps. Only an override of an estimator
-    does so, and tracing names it."""
+    """Parts of the plant's own state that it reads past all taps. Only an override of an estimator
+    does so, and `trace` names it."""
 
     def begin(self, batch: Batch) -> Memory:
         """Return the memory before the first step."""
@@ -138,17 +138,17 @@ class Module(Part):
 
     @abstractmethod
     def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
-        """Return what each of `writes` holds at this step, and the memory for the next one."""
+        """Return the value of each of `writes`, and the memory for the next step."""
 
     def before(self, batch: Batch) -> Outputs:
-        """Return what its sources held before the first step, for ports that read the past."""
+        """Return its sources' values before the first step, for ports that read the past."""
         del batch
         return {}
 
     def noise_hashes(self, batch: Batch) -> Sequence[str] | None:
-        """Return a hash of what it draws in each scene, `None` for a module that draws nothing.
+        """Return a hash of its random numbers in each scene; `None` if it draws none.
 
-        Two trials count as a pair only where these agree.
+        Two trials are a pair only where these hashes agree.
         """
         del batch
         return None
@@ -156,28 +156,28 @@ class Module(Part):
 
 @dataclass(frozen=True)
 class Progress:
-    """State of each scene's trial, `[B]` each; one that runs no longer stays as it ended."""
+    """State of each scene's trial, `[B]` each; ended trials keep their final values."""
 
     running: Array
     succeeded: Array
     crashed: Array
     """A trial that neither succeeded nor crashed has timed out."""
     time_s: Array
-    """Time at which it ended, or of now."""
+    """Time at which the trial ended, or the present time."""
     metrics: Mapping[str, Array] = field(default_factory=dict[str, Array])
     """Further measurements by name, `[B]` each."""
 
 
 class Plant(Part):
-    """The part that the loop closes over: it senses, and what it reads at its ports moves it."""
+    """The controlled part: it senses, and moves by its inputs."""
 
     name: str = "plant"
     steps: int
     """Control steps after which every trial ends."""
     senses: tuple[str, ...] = ()
-    """Sources of the interface that `sense` gives."""
+    """Sources of the interface that `sense` returns."""
     shows: tuple[str, ...] = ()
-    """Truths that `sense` gives beside: only for modules that declare them."""
+    """Truths that `sense` returns as well, for modules that declare them."""
 
     @abstractmethod
     def start(self, batch: Batch) -> State:
@@ -185,27 +185,30 @@ class Plant(Part):
 
     @abstractmethod
     def sense(self, state: State) -> Outputs:
-        """Return what each of `senses` and `shows` holds now."""
+        """Return the present value of each of `senses` and `shows`."""
 
     @abstractmethod
     def advance(self, state: State, inputs: Inputs) -> State:
-        """Return the state one control step later. The state given is not used again."""
+        """Return the state one control step later. The loop does not use the old state again."""
 
     @abstractmethod
     def progress(self, state: State) -> Progress:
-        """Return where the trials stand."""
+        """Return the state of the trials."""
 
     @abstractmethod
     def conditions(self, state: State) -> tuple[Sequence[str], Sequence[str]]:
         """Return hashes of each scene's initial state and of its disturbances, `[B]` each."""
 
-    def over(self, state: State, step: int) -> bool:
-        """Return whether no trial runs any more; where that waits for a device, not every step."""
-        del step
-        return not bool(self.progress(state).running.any())
+    def over(self, state: State, step: int) -> bool | None:
+        """Return whether all trials have ended; `None`: the loop reads `progress` at every step.
+
+        Override it where that read waits for a device, and wait at some steps only.
+        """
+        del state, step
+        return None
 
     def position(self, state: State) -> Array | None:
-        """Return where the scenes' vehicles are, `[B, 3]`, metres; `None`: nothing to draw."""
+        """Return the positions of the scenes' vehicles, `[B, 3]`, m; `None`: nothing to draw."""
         del state
         return None
 
@@ -221,12 +224,12 @@ class Graph:
 
     @property
     def parts(self) -> tuple[Part, ...]:
-        """All that read: the modules, and the plant last."""
+        """All readers: the modules, and the plant last."""
         return (*self.modules, self.plant)
 
 
 def label_of(part: Part) -> str:
-    """Return what messages call a part."""
+    """Return the name of a part in messages."""
     return "the plant" if isinstance(part, Plant) else f"module '{part.name}'"
 
 

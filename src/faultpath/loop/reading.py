@@ -10,10 +10,10 @@ from faultpath.core.errors import SystemMistake
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """A source's value. A reader cannot write to it; its owner may once the step is over."""
+    """Value of a source. A reader cannot write to it; its owner may once the step is over."""
 
     value: Array
-    """`[B, ...]`, one row a scene, in the source's unit; or a `Query` whose answers are."""
+    """`[B, ...]`, one row a scene, in the source's unit; or a `Query` with such answers."""
     source: str
     step: int
     """Control step at which the value was valid."""
@@ -21,24 +21,25 @@ class Reading:
 
 @dataclass(frozen=True, slots=True)
 class Query:
-    """The value of a reading that is a function: clearance at points, motion under commands.
+    """Value of a reading that is a function: clearance at points, motion under commands.
 
-    A tap delivers it as a function of one argument whose every answer passes the tap: faults act
-    on each, and receipts count them. The n-th ask of a step has random numbers and a memory of its
-    own, so an intervention that holds or delays gives the n-th ask what the n-th ask got before.
+    A tap delivers it as a function of one argument. Every answer passes the tap: faults act on it,
+    and the delivery log counts it. The n-th request of a step has random numbers and a memory of
+    its own, so an intervention that holds or delays gives it what the n-th request of an earlier
+    step got.
     """
 
     answer: Callable[[Any], Any]
-    """Returns what a request gets without a fault."""
+    """Returns the answer to a request without a fault."""
     value: Callable[[Any], Array] = lambda answer: answer
-    """The array `[B, ...]` in an answer that faults act on, as the source declares it. It is
-    called only where something looks at it."""
+    """Returns the array `[B, ...]` in an answer that faults act on, as the source declares it; only
+    called where that array is needed."""
     changed: Callable[[Any, Array], Any] = lambda answer, value: value
-    """The answer with another such array in its place."""
+    """Returns the answer with another array in the place of that one."""
 
 
 class TapError(SystemMistake):
-    """A tap was used against what the interface declares; the sentence names the tap."""
+    """A tap was used in a way the interface does not allow; the sentence names the tap."""
 
 
 class UndeclaredReader(TapError):
@@ -54,12 +55,14 @@ class MalformedReading(TapError):
 
 
 class NotFinite(Exception):
-    """The first reading at a tap is not finite. Fails the trial, not the run, because a
-    fault further up may have brought it about."""
+    """The first reading at a tap is not finite.
+
+    Fails the trial, not the run, because a fault further up may have caused it.
+    """
 
 
 class WrittenTo(TapError):
-    """A reader wrote into what a tap gave it, and others may have read that."""
+    """A reader wrote into a delivered array, which other readers may share."""
 
 
 class NotDelivered(TapError):
@@ -67,4 +70,4 @@ class NotDelivered(TapError):
 
 
 class FaultedElsewhere(TapError):
-    """A reader that no fault names got an altered reading."""
+    """A reader got an altered reading although no fault names it."""

@@ -1,4 +1,4 @@
-"""One reader's end of one channel: the faults that act there, and what is counted."""
+"""One tap: the faults that act there, the checks of its readings, and its counts."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
@@ -20,6 +20,7 @@ from faultpath.core.text import listed, unknown
 from faultpath.faults import Draws, Fault, Moment
 from faultpath.faults.base import Memory
 from faultpath.interface import Interface, Provenance
+from faultpath.loop.delivery_log import FaultLog, Guard, StepCounter, TapLog
 from faultpath.loop.reading import (
     IllegalRead,
     MalformedReading,
@@ -29,7 +30,6 @@ from faultpath.loop.reading import (
     TapError,
     UndeclaredReader,
 )
-from faultpath.loop.receipts import CorruptionReceipt, Guard, Receipt, Tally
 
 
 class Corruption:
@@ -39,26 +39,28 @@ class Corruption:
 
     def __init__(self, fault: Fault, draws: Draws, dt_s: float) -> None:
         self.fault = fault
-        self.in_force = Tally()
+        self.in_force = StepCounter()
         self._draws = draws
         self._dt_s = dt_s
         self._memories: dict[int, Memory] = {}
-        """By ask within a step; a reading that is no query is ask 0."""
+        """By request within a step; a reading that is no query counts as request 0."""
 
-    def act(self, reading: Array, step: int, ask: int = 0) -> tuple[Array, bool]:
-        """Return the value and whether the fault is in force.
+    def act(self, reading: Array, step: int, request: int = 0) -> tuple[Array, bool]:
+        """Return the value, and whether the fault is in force.
 
         Raises `UserError` where the intervention cannot act on such a reading.
         """
-        fault, doing = self.fault, self.fault.intervention
+        fault, intervention = self.fault, self.fault.intervention
         if fault.over(step):
             self._memories.clear()
             return reading, False
-        draws = self._draws.beside(f"?{ask}") if ask else self._draws
-        at = Moment(step, step - fault.onset_step, self._dt_s, draws)
-        if ask not in self._memories:
-            self._memories[ask] = doing.begin(reading, at)
-        value, self._memories[ask] = doing.apply(reading, self._memories[ask], at)
+        draws = self._draws.beside(f"?{request}") if request else self._draws
+        moment = Moment(step, step - fault.onset_step, self._dt_s, draws)
+        if request not in self._memories:
+            self._memories[request] = intervention.begin(reading, moment)
+        value, self._memories[request] = intervention.apply(
+            reading, self._memories[request], moment
+        )
         if value is not reading and (value.dtype != reading.dtype or value.shape != reading.shape):
             raise UserError(
                 f"{self._prefix} turns {reading.dtype} {list(reading.shape)} into {value.dtype} "
@@ -75,13 +77,12 @@ class Corruption:
 
     @property
     def _prefix(self) -> str:
-        """Beginning of messages."""
         return f"fault on channel '{self.fault.channel}': {self.fault.intervention.kind}"
 
 
 @dataclass(slots=True, eq=False)
 class Tap:
-    """One reader's end of one channel."""
+    """A channel as one reader gets it."""
 
     channel: str
     reader: str
@@ -91,36 +92,36 @@ class Tap:
     """Shape of every reading, scenes first."""
     corruptions: tuple[Corruption, ...] = ()
     deliveries: int = 0
-    asks: int = 0
-    """Answers of a query, over all steps."""
+    answers: int = 0
+    """Answers of queries, over all steps."""
     last_step: int = -1
     value: Array = None
-    """The value of the step's reading."""
+    """Value of this step's reading, before any fault."""
     cached: Array = None
-    """Value that the reader got of it."""
+    """Value delivered this step."""
     finite: Array = None
-    """Where the first reading was finite, until that has been looked at."""
+    """Mask of the first reading's finite numbers, until it has been checked."""
     guard: Guard | None = None
-    faulted: Tally = field(default_factory=Tally)
-    altered: Tally = field(default_factory=Tally)
+    faulted: StepCounter = field(default_factory=StepCounter)
+    altered: StepCounter = field(default_factory=StepCounter)
 
     def __str__(self) -> str:
         return f"{self.channel} -> {self.reader}"
 
     def add(self, corruption: Corruption) -> None:
-        """Let a fault act here; a fault that is alone counts for the whole tap."""
+        """Let a fault act here. A single fault's counter serves the whole tap."""
         self.corruptions = (*self.corruptions, corruption)
-        self.faulted = corruption.in_force if len(self.corruptions) == 1 else Tally()
+        self.faulted = corruption.in_force if len(self.corruptions) == 1 else StepCounter()
 
-    def receipt(self, n_scenes: int) -> Receipt:
-        """Return what passed here so far; this waits for the device that holds the counts."""
-        return Receipt(
+    def log(self, n_scenes: int) -> TapLog:
+        """Return the log so far; this waits for the device that holds the counts."""
+        return TapLog(
             channel=self.channel,
             reader=self.reader,
             deliveries=self.deliveries,
-            asks=self.asks,
-            corruptions=tuple(
-                CorruptionReceipt(
+            answers=self.answers,
+            faults=tuple(
+                FaultLog(
                     corruption.fault.describe(),
                     corruption.fault.onset_step,
                     corruption.in_force.counts(n_scenes),
@@ -154,7 +155,7 @@ class Tap:
                 self.check_finite(scenes)
 
     def check_shape(self, value: Array) -> None:
-        """Raise `MalformedReading` for another shape than declared."""
+        """Raise `MalformedReading` unless the shape is the declared one."""
         if getattr(value, "shape", ()) == self.shape:
             return
         shape, declared = list(getattr(value, "shape", ())), list(self.shape)
@@ -173,26 +174,26 @@ class Tap:
         )
 
     def check_finite(self, scenes: tuple[str, ...]) -> None:
-        """Raise `NotFinite` when the first value was not; this waits for the device."""
+        """Raise `NotFinite` if the first value was not finite; this waits for the device."""
         if self.finite is None:
             return
         finite, self.finite = to_numpy(self.finite), None
-        lost = np.flatnonzero(~finite.reshape(len(scenes), -1).all(axis=1))
-        if lost.size:
+        failed = np.flatnonzero(~finite.reshape(len(scenes), -1).all(axis=1))
+        if failed.size:
             raise NotFinite(
-                f"tap {self}: the first reading is not finite in {lost.size} of {len(scenes)} "
-                f"scenes, '{scenes[lost[0]]}' for one"
+                f"tap {self}: the first reading is not finite in {failed.size} of {len(scenes)} "
+                f"scenes, '{scenes[failed[0]]}' for one"
             )
 
     def check_same(self, value: Any, step: int) -> None:
-        """Raise `MalformedReading` when a second delivery in a step brings another reading.
+        """Raise `MalformedReading` if a second delivery in a step has another reading.
 
-        On an accelerator the two are not compared, because no delivery waits for it.
+        On an accelerator values are not compared, because no delivery waits for the device.
         """
-        alike = is_array(value) and tuple(value.shape) == self.shape
-        if alike and device_kind(value) == device_kind(self.value) == "cpu":
-            alike = not to_numpy(differs(value, self.value)).any()
-        if not alike:
+        same = is_array(value) and tuple(value.shape) == self.shape
+        if same and device_kind(value) == device_kind(self.value) == "cpu":
+            same = not to_numpy(differs(value, self.value)).any()
+        if not same:
             raise MalformedReading(
                 f"tap {self}: step {step} brings two different readings, but a channel has one in "
                 "a step; deliver it once, or declare a channel for each"
@@ -228,37 +229,37 @@ def wire(
             problem = unknown("source", bound, channel.sources)
             raise UserError(f"channel '{channel.name}' cannot be bound: {problem}")
         source = interface.source(bound)
-        secret = source.provenance is Provenance.PRIVILEGED
+        is_privileged = source.provenance is Provenance.PRIVILEGED
         shape = (n_scenes, *source.shape)
         for name in channel.readers:
             if readers is None or name in readers:
-                permitted = bound in privileged or not secret
+                permitted = bound in privileged or not is_privileged
                 taps[channel.name, name] = Tap(channel.name, name, bound, permitted, shape)
     return taps
 
 
 class DeliveryListener:
-    """Sees what passes the taps of one run; a subclass overrides what it wants to see.
+    """Is told what passes the taps of one run; a subclass overrides the methods it needs.
 
-    Readings are those of the run itself: a listener copies what it keeps and writes to nothing.
+    It gets the arrays of the run itself, so it copies what it keeps and writes to none.
     """
 
     def delivered(self, tap: Tap, reading: Reading, step: int, got: Any) -> None:
-        """See that a reader got `got` of a reading; of a query, the function that answers."""
+        """Take note of the value that a reader got; for a query, the function that answers."""
 
     def answered(
         self, tap: Tap, query: Query, step: int, request: Any, answer: Any, got: Any
     ) -> None:
-        """See what a query answered to a request, and what the reader got of that answer."""
+        """Take note of a query's answer to a request, and of the answer that the reader got."""
 
     def faulted(self, step: int, in_force: Any) -> None:
-        """See in which scenes a fault was in force at some tap: a bool, or a bool array `[B]`."""
+        """Take note of the scenes in which a fault was in force at a tap: a bool, or bool `[B]`."""
 
 
 def refusal(
     interface: Interface, tap: Tap | None, channel: str, reader: str, reading: Any, step: int
 ) -> TapError:
-    """Return what is wrong with a delivery that the interface or the variant does not allow."""
+    """Return the error for a delivery that the interface or the variant does not allow."""
     here = f"tap {channel} -> {reader}"
     if tap is None:
         declared = interface.channel(channel).readers
@@ -275,6 +276,8 @@ def refusal(
             f"{here}: deliver() was given a {type(reading).__name__}; wrap it: "
             f"Reading(value, '{tap.source}', step)"
         )
+    if step < 0:
+        return MalformedReading(f"{here}: step {step} is before the first, which is 0")
     if reading.source != tap.source:
         return IllegalRead(
             f"{here}: the reading is of source '{reading.source}', but the channel is bound to "

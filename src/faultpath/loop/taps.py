@@ -5,16 +5,17 @@ from dataclasses import dataclass
 from functools import partial
 from itertools import count
 from types import MappingProxyType
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.core.arrays import Array, differs, namespace, place, read_only, to_numpy
+from faultpath.core.arrays import Array, differs, match_device, namespace, read_only, to_numpy
 from faultpath.core.errors import UserError
 from faultpath.core.text import unknown
 from faultpath.faults import Draws, Fault
 from faultpath.interface import Interface, modules
+from faultpath.loop.delivery_log import DeliveryLog, Guard, StepCounter
 from faultpath.loop.reading import (
     MalformedReading,
     Query,
@@ -22,14 +23,13 @@ from faultpath.loop.reading import (
     TapError,
     WrittenTo,
 )
-from faultpath.loop.receipts import Guard, Receipts, Tally, check_delivered
 from faultpath.loop.tap import Corruption, DeliveryListener, Tap, refusal, wire
 from faultpath.loop.trajectory import Trajectories
 
 
 @dataclass(frozen=True, slots=True)
 class ModuleTaps:
-    """All that a module under test sees of the taps: its own deliveries."""
+    """The taps as one module sees them: its own deliveries."""
 
     module: str
     deliver: Callable[[str, str, Reading, int], Array]
@@ -41,20 +41,19 @@ class Taps:
 
     Args:
         interface: The system's interface.
-        faults: As `faultpath.faults.resolve` returns them, in the order in which they act where
-            they meet at a tap.
+        faults: As `faultpath.faults.resolve` returns them; several at one tap act in this order.
         scenes: Scene ids, one a row of every reading.
         dt_s: Length of a control step, s.
         seed: Seed of the faults' random numbers.
-        bindings: Channel to the source that feeds it here; the rest keep their first source.
-        readers: Readers that this variant has; `None`: all that are declared.
+        bindings: Channel to source, where it is not the channel's first source.
+        readers: Readers of this variant; `None`: all that are declared.
         privileged: Privileged sources that this treatment may read.
-        guard: Give every reader a copy of its own and let `verify` tell who wrote into it. NumPy
-            readings cannot be written to in any case.
-        observer: Sees what is delivered.
+        guard: Give every reader a copy of its own, so that `verify` can name a reader that wrote
+            into it. NumPy readings cannot be written to in any case.
+        observer: Is told of every delivery.
 
     Raises:
-        UserError: A name is unknown, or a fault names a reader that is not here.
+        UserError: A name is unknown, or a fault names a reader that the variant does not have.
     """
 
     def __init__(
@@ -71,16 +70,17 @@ class Taps:
         guard: bool = False,
         observer: DeliveryListener | None = None,
     ) -> None:
-        self._refusal = partial(refusal, interface)
         self._interface = interface
         self._observer = observer
         self._scenes = tuple(scenes)
         self._active: Array = None
-        self._placed: Array = None
+        self._active_on_device: Array = None
+        """`_active` on the device of the latest readings."""
         self._trajectories = Trajectories(len(self._scenes))
-        self._faulted, self._altered = Tally(), Tally()
-        self._open: Array = None
-        self._closed: Array = None
+        self._faulted, self._altered = StepCounter(), StepCounter()
+        self._shared_value: Array = None
+        self._shared_view: Array = None
+        """Read-only view of `_shared_value`, which its readers share."""
         self._taps = wire(interface, bindings or {}, readers, privileged, len(scenes))
         for tap in self._taps.values() if guard else ():
             tap.guard = Guard()
@@ -95,52 +95,53 @@ class Taps:
         self._add(faults, dt_s, seed)
 
     def _add(self, faults: Iterable[Fault], dt_s: float, seed: int) -> None:
+        # One object for equal draws, so that numbers are drawn once for all readers.
         shared: dict[Draws, Draws] = {}
-        apart: dict[Draws | None, Fault] = {}
+        loaded: dict[Draws | None, Fault] = {}
         for fault in faults:
             draws = fault.draws(self._scenes, seed)
             if abs(fault.loading) < 1:
-                if draws.own in apart:
+                if draws.own in loaded:
                     raise UserError(
-                        f"faults '{apart[draws.own].describe()}' and '{fault.describe()}' have "
+                        f"faults '{loaded[draws.own].describe()}' and '{fault.describe()}' have "
                         "a loading and draw the same numbers nevertheless: give them different "
                         "causes"
                     )
-                apart[draws.own] = fault
-            common = shared.setdefault(draws, draws)
+                loaded[draws.own] = fault
+            draws = shared.setdefault(draws, draws)
             for reader in fault.readers:
                 if (fault.channel, reader) not in self._taps:
                     raise UserError(
                         f"fault '{fault.describe()}' has no tap at '{reader}': spell out its "
                         "readers with faultpath.faults.resolve"
                     )
-                self._taps[fault.channel, reader].add(Corruption(fault, common, dt_s))
+                self._taps[fault.channel, reader].add(Corruption(fault, draws, dt_s))
 
     def deliver(self, channel: str, reader: str, reading: Reading, step: int) -> Array:
-        """Return what `reader` gets of `channel` at control step `step`.
+        """Return the value that `reader` gets of `channel` at control step `step`.
 
-        Without a fault on this tap that is `reading.value` itself, uncopied; a NumPy array comes
-        as a view that cannot be written to. A second delivery in one step returns what the first
-        did, with a fault or without. A query comes as a function of its request; see `Query`.
+        Without a fault on this tap that is `reading.value` itself, uncopied; a NumPy array is
+        returned as a read-only view. A second delivery in one step returns the value of the first.
+        A query is returned as a function of a request; see `Query`.
 
         Raises:
             UndeclaredReader: This variant has no such reader of the channel.
             IllegalRead: The reading is not of the bound source, is privileged, or of the future.
-            MalformedReading: It is no reading or not as declared, differs from that of the step's
-                first delivery, or `step` is before the last one.
+            MalformedReading: It is no reading or not as declared, differs from the step's first
+                delivery, or `step` is before that of the last delivery.
             NotFinite: The first reading at this tap is not finite.
         """
         tap = self._taps.get((channel, reader))
-        if tap is None:
-            raise self._refusal(tap, channel, reader, reading, step)
-        try:
-            value = reading.value
-            if step < 0:
-                raise MalformedReading(f"tap {tap}: step {step} is before the first, which is 0")
-            if reading.source != tap.source or not tap.permitted or reading.step > step:
-                raise self._refusal(tap, channel, reader, reading, step)
-        except AttributeError:
-            raise self._refusal(tap, channel, reader, reading, step) from None
+        # One test for all, since every delivery passes here; `refusal` finds out which one failed.
+        if (
+            tap is None
+            or not isinstance(cast("Any", reading), Reading)
+            or reading.source != tap.source
+            or not tap.permitted
+            or not 0 <= step >= reading.step
+        ):
+            raise refusal(self._interface, tap, channel, reader, reading, step)
+        value = reading.value
         if step != tap.last_step:
             if step < tap.last_step:
                 raise MalformedReading(
@@ -153,17 +154,17 @@ class Taps:
             tap.deliveries += 1
             tap.value = value
             if isinstance(value, Query):
-                got = partial(self._answer, tap, value, step, count())
+                tap.cached = partial(self._answer, tap, value, step, count())
             else:
-                got = self._corrupted(tap, value, step) if tap.corruptions else value
-                if isinstance(got, np.ndarray):
-                    if got is not self._open:  # readers of one array share the view of it
-                        self._open, self._closed = got, read_only(got)
-                    got = self._closed
+                value = self._corrupted(tap, value, step) if tap.corruptions else value
+                if isinstance(value, np.ndarray):
+                    if value is not self._shared_value:
+                        self._shared_value, self._shared_view = value, read_only(value)
+                    value = self._shared_view
                 elif tap.guard is not None:
-                    got = tap.guard.hand_out(got)
-                self._trajectories.note(got)
-            tap.cached = got
+                    value = tap.guard.hand_out(value)
+                self._trajectories.note(value)
+                tap.cached = value
         elif value is not tap.value:
             tap.check_same(value, step)
         if self._observer is not None:
@@ -173,36 +174,36 @@ class Taps:
     def _answer(
         self, tap: Tap, query: Query, step: int, numbers: Iterator[int], request: Any
     ) -> Any:
-        """Answer a request to a query; `numbers` count those of its step."""
+        """Answer a request to a query; `numbers` count the requests of its step."""
         if step != tap.last_step:
             raise MalformedReading(
                 f"tap {tap}: the query of step {step} was asked in step {tap.last_step}; ask what "
                 "was delivered in this step"
             )
         answer = read_only(query.answer(request))
-        ask, first = next(numbers), not tap.asks
-        tap.asks += 1
-        got = answer
+        number, first = next(numbers), not tap.answers
+        tap.answers += 1
+        delivered = answer
         if first or tap.corruptions or tap.guard:
             clean = value = query.value(answer)
             if first:
                 tap.check_first(value, self._scenes)
             if tap.corruptions:
-                value = self._corrupted(tap, value, step, ask)
+                value = self._corrupted(tap, value, step, number)
             if tap.guard is not None:
                 value = tap.guard.hand_out(value)
             if value is not clean:
-                got = query.changed(answer, value)
+                delivered = query.changed(answer, value)
         if self._observer is not None:
-            self._observer.answered(tap, query, step, request, answer, got)
-        return got
+            self._observer.answered(tap, query, step, request, answer, delivered)
+        return delivered
 
-    def _corrupted(self, tap: Tap, reading: Array, step: int, ask: int = 0) -> Array:
+    def _corrupted(self, tap: Tap, reading: Array, step: int, request: int = 0) -> Array:
         tap.check_shape(reading)
         value, faulted = reading, False
         for corruption in tap.corruptions:
-            value, in_force = corruption.act(value, step, ask)
-            in_force = self._running(in_force, reading)
+            value, in_force = corruption.act(value, step, request)
+            in_force = self._where_active(in_force, reading)
             corruption.in_force.note(step, in_force)
             faulted = in_force if faulted is False else faulted | in_force
         if len(tap.corruptions) > 1:
@@ -211,31 +212,31 @@ class Taps:
         if self._observer is not None:
             self._observer.faulted(step, faulted)
         if value is not reading and faulted is not False:
-            altered = self._running(differs(value, reading), reading)
+            altered = self._where_active(differs(value, reading), reading)
             tap.altered.note(step, altered)
             self._altered.note(step, altered)
         return value
 
     def set_active(self, mask: Array | None) -> None:
-        """Say which scenes still run, a boolean array `[B]`; `None`: all. Receipts count these."""
-        self._active = self._placed = mask
+        """Set which scenes still run, bool `[B]`; `None`: all. Only these are counted."""
+        self._active = self._active_on_device = mask
         self._trajectories.set_running(mask)
 
     def trajectory_hashes(self) -> tuple[str, ...]:
-        """Return a hash a scene of all that its readers got while it ran; waits for the device."""
+        """Return a hash a scene of its trajectory so far; this waits for the device."""
         return self._trajectories.hashes()
 
-    def _running(self, mask: Any, reading: Array) -> Any:
-        """Return `mask`, a bool or boolean array `[B]`, where the scene runs."""
+    def _where_active(self, mask: Any, reading: Array) -> Any:
+        """Return `mask`, a bool or boolean array `[B]`, restricted to scenes that still run."""
         if self._active is None or mask is False:
             return mask
-        placed = self._placed
-        if namespace(placed) is not namespace(reading) or placed.device != reading.device:
-            placed = self._placed = place(to_numpy(self._active), reading)
-        return placed if mask is True else mask & placed
+        active = self._active_on_device
+        if namespace(active) is not namespace(reading) or active.device != reading.device:
+            active = self._active_on_device = match_device(to_numpy(self._active), reading)
+        return active if mask is True else mask & active
 
     def for_module(self, module: str) -> ModuleTaps:
-        """Return the view that `module` gets; raises `TapError` for an unknown module."""
+        """Return the taps as `module` sees them; `TapError` for an unknown module."""
         if module not in modules(self._interface):
             raise TapError(unknown("module", module, modules(self._interface)))
 
@@ -244,22 +245,26 @@ class Taps:
 
         return ModuleTaps(module, deliver)
 
-    def receipts(self) -> Receipts:
-        """Return what was delivered so far; this waits for the device that holds the counts."""
+    def delivery_log(self) -> DeliveryLog:
+        """Return the log so far; this waits for the device that holds the counts."""
         n = len(self._scenes)
-        return Receipts(
+        return DeliveryLog(
             scenes=self._scenes,
-            taps=tuple(tap.receipt(n) for tap in self._taps.values()),
+            taps=tuple(tap.log(n) for tap in self._taps.values()),
             steps_faulted=self._faulted.counts(n),
             steps_altered=self._altered.counts(n),
         )
 
     def verify(self, last_step: NDArray[np.int64] | int) -> None:
-        """Check that each fault reached the readers that it names, and nobody else.
+        """Check that each fault reached the readers that it names, and no others.
 
-        `last_step`: the last control step at which each scene ran, `[B]` or one for all. Raises as
-        `check_delivered`, `NotFinite` for a first reading on an accelerator, and `WrittenTo` of a
-        guarded reader that wrote.
+        Args:
+            last_step: The last control step at which each scene ran, `[B]` or one for all.
+
+        Raises:
+            NotDelivered, FaultedElsewhere: See `DeliveryLog.check`.
+            NotFinite: A first reading on an accelerator was not finite.
+            WrittenTo: A guarded reader wrote into its copy.
         """
         for tap in self._taps.values():
             tap.check_finite(self._scenes)
@@ -269,4 +274,4 @@ class Taps:
                     "copy it before writing"
                 )
         last = np.broadcast_to(np.asarray(last_step, dtype=np.int64), (len(self._scenes),))
-        check_delivered(self.receipts(), self._named, last)
+        self.delivery_log().check(self._named, last)

@@ -1,4 +1,4 @@
-"""A hash of each trial's trajectory: all that its readers got while it ran."""
+"""A hash of each trial's trajectory: all values that its readers got while it ran."""
 
 from hashlib import blake2b
 from math import prod
@@ -9,16 +9,16 @@ from numpy.typing import NDArray
 
 from faultpath.core.arrays import Array, copy, is_array, row_bytes, to_numpy
 
-_MOST_WAITING = 1 << 22
-"""Bytes that wait to be hashed together: one call a scene is far cheaper than one a delivery."""
+_LARGEST_BUFFER = 1 << 22
+"""Bytes hashed together: one call a scene is far cheaper than one a delivery."""
 
 
 class Trajectories:
     """The trajectories of the scenes of a block.
 
-    Values count by their bits in the order in which they were delivered, and names do not: what
-    is only called otherwise has the same trajectory. A scene that has ended adds nothing, so that
-    its hash does not depend on the others of its block.
+    The bits of the values count, in order of delivery; names do not, so renaming a channel leaves
+    the hash as it is. A scene that has ended adds nothing, so that its hash does not depend on the
+    others of its block.
     """
 
     def __init__(self, n_scenes: int) -> None:
@@ -30,49 +30,49 @@ class Trajectories:
         self._kept_mask: Array = None
 
     def set_running(self, mask: Array | None) -> None:
-        """Say which scenes run from now on, bool `[B]`; `None`: all."""
+        """Set which scenes run from now on, bool `[B]`; `None`: all."""
         self._mask, self._kept_mask = mask, None
 
     def note(self, value: Any) -> None:
-        """Take in what a reader got.
+        """Add a value that a reader got.
 
-        What is no array with a row a scene, such as the answers of a query, is left out: it shows
-        in what is done with it.
+        Values without a row a scene, such as the answers of a query, are left out: they show in
+        what the reader does with them.
         """
         scenes = len(self._hashes)
         if not is_array(value) or value.shape[:1] != (scenes,) or 0 in value.shape:
             return
         if self._kept_mask is None and self._mask is not None:
-            self._kept_mask = copy(self._mask)  # a plant may write to its own later
-        # Without its history: a reading that torch can differentiate would keep all steps alive.
+            self._kept_mask = copy(self._mask)  # the plant may reuse its mask later
+        # Without its autograd graph, which would keep all steps in memory.
         value = value.detach() if hasattr(value, "detach") else value
         self._waiting.append((copy(value), self._kept_mask))
         self._size += prod(value.shape) * 8
-        if self._size > _MOST_WAITING:
-            self._take_in()
+        if self._size > _LARGEST_BUFFER:
+            self._flush()
 
     def hashes(self) -> tuple[str, ...]:
-        """Return a hash a scene, of all that was noted so far; this waits for the device."""
-        self._take_in()
+        """Return a hash a scene of the values so far; this waits for the device."""
+        self._flush()
         return tuple(state.hexdigest() for state in self._hashes)
 
-    def _take_in(self) -> None:
+    def _flush(self) -> None:
         if not self._waiting:
             return
         scenes = len(self._hashes)
         masks, widths, parts = list[Array](), list[int](), list[NDArray[np.uint8]]()
-        for value, mask in self._waiting:  # those of one step have one mask
+        for value, mask in self._waiting:  # all values of a step share one mask
             parts.append(row_bytes(value))
             if not masks or mask is not masks[-1]:
                 masks.append(mask)
                 widths.append(0)
             widths[-1] += parts[-1].shape[1]
-        ran = np.ones((scenes, len(masks)), np.bool_)
+        running = np.ones((scenes, len(masks)), np.bool_)
         for step, mask in enumerate(masks):
             if mask is not None:
-                ran[:, step] = to_numpy(mask)
-        numbers = np.concatenate(parts, axis=1)
-        for state, row, steps in zip(self._hashes, numbers, ran, strict=True):
+                running[:, step] = to_numpy(mask)
+        values = np.concatenate(parts, axis=1)
+        for state, row, steps in zip(self._hashes, values, running, strict=True):
             if steps.all():
                 state.update(row)
             elif steps.any():

@@ -1,4 +1,4 @@
-"""For a package that adds verbs to `faultpath`; light, since `--help` loads it."""
+"""For a package that adds verbs to `faultpath`; it imports little, because `--help` loads it."""
 
 from faultpath.cli.options import FOUND, Json, Verbs, path, refuse_with
 from faultpath.core.errors import Stopped, UserError

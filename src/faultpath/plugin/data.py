@@ -1,4 +1,4 @@
-"""For a package that makes files and keeps them: whole files, and the state of the code behind."""
+"""For a package that makes data files: whole files, and the state of the code that made them."""
 
 from faultpath.core.files.atomic import (
     check_output,

@@ -1,4 +1,4 @@
-"""For a system that shows more of a recorded trial, or that records one for other trials."""
+"""For a system with further signals of recorded trials, or that uses recordings itself."""
 
 from faultpath.run.attempt import Done, taps_of
 from faultpath.run.check.recording import RecordedTrial, Recording, Values, added, trials

@@ -1,4 +1,4 @@
-"""For a verb that shows results: estimates with intervals, tables, and numbers as all pages do."""
+"""For a verb that shows results: estimates with intervals, tables, and the format of numbers."""
 
 from faultpath.api.display import SafeConsole
 from faultpath.core.text import counted
@@ -6,7 +6,6 @@ from faultpath.report.sentences.wording import interval, plain
 from faultpath.report.tables import MISSING, Line, Table, line
 from faultpath.report.tables.terminal import drawn
 from faultpath.stats.contrast import Contrast
-from faultpath.stats.effects import WindowQuantiles
 from faultpath.stats.estimate import Estimate
 
 __all__ = [
@@ -16,7 +15,6 @@ __all__ = [
     "Line",
     "SafeConsole",
     "Table",
-    "WindowQuantiles",
     "counted",
     "drawn",
     "interval",

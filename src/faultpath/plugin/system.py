@@ -1,4 +1,4 @@
-"""For what runs in a trial: errors, random numbers, the user's parts, files that it reads."""
+"""For code that runs in a trial: errors, random numbers, the user's parts, files that it reads."""
 
 from faultpath.core.error_source import explained, located
 from faultpath.core.errors import Notice, Stopped, SystemMistake, UserError

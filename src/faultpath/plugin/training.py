@@ -1,4 +1,4 @@
-"""For a package that fits modules of its own: the loop over epochs, weights and their cards."""
+"""For a package that fits its own modules: the loop over epochs, weights and their cards."""
 
 from faultpath.learning.loop import FitProgress, FitTask, Journal, minibatches, run
 from faultpath.learning.model_card import (

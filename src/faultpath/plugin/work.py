@@ -1,4 +1,4 @@
-"""For a package that does the same work many times: in worker processes, each part by itself."""
+"""For a package with much work of one kind, which worker processes share."""
 
 from faultpath.run.work.executor import Lost, Returned, run_all, run_each, send_message
 from faultpath.run.work.processes import local

@@ -17,7 +17,7 @@ from faultpath.report.tables import Entry, Line, Table, line
 from faultpath.report.tables.html import html
 from faultpath.report.tables.markdown import blocks
 from faultpath.run.provenance import RunProvenance
-from faultpath.stats.contrast import MIN_SCENES
+from faultpath.stats.power import MIN_SCENES
 
 
 def tables(record: MapResult) -> tuple[Table, ...]:

@@ -1,6 +1,6 @@
 """Who gets the fault: a picture of each condition.
 
-Which taps had the fault in force comes from receipts, who reads from the wiring of the variants.
+The delivery log says which taps had the fault in force, and the variants say who reads.
 """
 
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ class Reader:
     taps: frozenset[Tap]
     """At which its variant reads it; empty where it does not."""
     faulted: frozenset[Tap]
-    """Those of the taps where receipts show the fault in force."""
+    """Taps at which the delivery log shows the fault in force."""
     changed: bool
     """Whether the fault changed a reading at one of them."""
 
@@ -96,7 +96,7 @@ def forks(source: ReportInput) -> tuple[Fork, ...]:
             untouched -= hit
             readers: list[Reader] = []
             for module in modules:
-                # Receipts come before the wiring: a faulted tap was read.
+                # The delivery log comes before the wiring: a faulted tap was read.
                 here = frozenset(tap for tap in hit | read if module_of(tap[1]) == module)
                 changed = any(t.altered_steps for t in taps if module_of(t.reader) == module)
                 readers.append(Reader(module, here, here & hit, changed))

@@ -82,8 +82,8 @@ def attempt(
         dt_s = system.control_dt_s
         steps = [outcome.steps(dt_s) for outcome in outcomes]
         taps.verify(np.array(steps, dtype=np.int64) - 1)
-        receipts = taps.receipts()
-        counts = receipts.steps_faulted, receipts.steps_altered, taps.trajectory_hashes()
+        log = taps.delivery_log()
+        counts = log.steps_faulted, log.steps_altered, taps.trajectory_hashes()
         noted = tuple(
             replace(
                 outcome,
@@ -93,7 +93,7 @@ def attempt(
             )
             for outcome, faulted, altered, trajectory in zip(outcomes, *counts, strict=True)
         )
-        return Done(noted, receipts.counts())
+        return Done(noted, log.counts())
     except UserError as error:
         return Failed(located(error))
     except SystemExit as error:

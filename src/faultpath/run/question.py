@@ -61,7 +61,7 @@ def ask(model: type[_Question], fields: Mapping[str, object], command: bool = Fa
         return model.model_validate(dict(fields))
     except ValidationError as error:
         wrong = misfit_of(error, model)
-        first = str(wrong.place[0]) if wrong.place else ""
+        first = str(wrong.location[0]) if wrong.location else ""
         where = flag(model, first) if command and first in model.model_fields else wrong.where
         raise UserError(f"{where}: {wrong.says}.") from None
 

@@ -21,10 +21,10 @@ from pathlib import Path
 from types import CodeType, ModuleType
 
 from faultpath.core.error_source import described, note_system, ours
-from faultpath.core.error_source import place as where
+from faultpath.core.error_source import location as where
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.text import extra
-from faultpath.core.trees import Root, imported, kind_of, places
+from faultpath.core.trees import Root, imported, kind_of, package_paths
 from faultpath.run.opened import reads
 from faultpath.run.plan import SystemSpec
 from faultpath.system.checks import check_system
@@ -245,7 +245,7 @@ def _check_own(start: Path | str, folder: Path) -> None:
         seen.add(name := waiting[0])
         files = (folder / name / "__init__.py", folder / f"{name}.py")
         own = next((file for file in files if file.is_file()), None)
-        if own is None or ours(name) or not (origins := places(name)):
+        if own is None or ours(name) or not (origins := package_paths(name)):
             continue
         origin = origins[0] / own.name if origins[0].is_dir() else origins[0]
         if os.path.realpath(own) != os.path.realpath(origin) and kind_of(origin) == "local":
@@ -287,7 +287,7 @@ def _loading(name: str) -> Generator[None]:
         mistake = SystemMistake(
             f"{name!r} needs the package {package!r}, not installed here: {hint}"
         )
-        mistake.place = where(error)
+        mistake.location = where(error)
         raise mistake from error
 
 

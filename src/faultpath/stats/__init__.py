@@ -1,4 +1,4 @@
-"""Outcome arrays in, estimates and intervals out; no plots and no files."""
+"""Estimates, intervals and tests from arrays of outcomes; no plots and no files."""
 
 from faultpath.stats.breakeven import break_even
 from faultpath.stats.effects import success_effect

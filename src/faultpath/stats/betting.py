@@ -1,13 +1,13 @@
-"""Tests and intervals of a mean of bounded scene values that hold at whatever scene one stops.
+"""Tests and intervals of a mean of bounded scene values that are valid at any stopping time.
 
-Somebody who doubts that the mean is at most ``null`` stakes 1 and puts a share ``c`` of what he has
-on each scene: his capital is multiplied by ``1 - c + c (bound + value) / (bound + null)``. If the
-mean is at most ``null`` he can expect no gain, whatever came before, so his capital ever reaches
-``1 / alpha`` with chance at most ``alpha`` (Ville's inequality), however often one looks.
+A bettor against "the mean is at most ``null``" starts with a capital of 1 and stakes a share ``c``
+of it on each scene: the capital is multiplied by ``1 - c + c (bound + value) / (bound + null)``.
+Under the null no bet has a positive expected gain, so the capital ever reaches ``1 / alpha`` with
+probability at most ``alpha`` (Ville's inequality), however often it is checked.
 
 The capital here is the mean over many shares at once, Robbins' mixture martingale (Annals of
 Mathematical Statistics 41:1397, 1970), with the arcsine law of Krichevsky and Trofimov: for one
-seed of binary outcomes it is that of discordant pairs. The nulls that no capital doubts are a
+seed of binary outcomes it is that of discordant pairs. The nulls that are not rejected are a
 confidence sequence (Waudby-Smith and Ramdas, Journal of the Royal Statistical Society B 86:1,
 2024). A mixture of shares is a product over scenes, so it does not depend on their order.
 """
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from faultpath.stats.inputs import Floats
 
 _SHARES = np.sin((np.arange(32) + 0.5) * np.pi / 64.0)
-"""Shares staked, with equal weights: quantiles of the arcsine law between 0 and 1, never all."""
+"""Shares staked, with equal weights: quantiles of the arcsine law, all below 1."""
 _HALVINGS = 44
 
 
@@ -27,8 +27,8 @@ def log_capital(
 ) -> Floats:
     """Return [...]: the logarithm of the capital against "the mean is at most ``null``".
 
-    ``counts`` [..., values] says how often each of ``values`` occurred, none of them further from 0
-    than ``bound`` [...]; ``null`` [...] is above ``-bound``.
+    ``counts`` [..., values] are the numbers of scenes with each of ``values``, which are at most
+    ``bound`` [...] from 0; ``null`` [...] is above ``-bound``.
     """
     bound, null = np.asarray(bound), np.asarray(null, dtype=np.float64)
     gain = (bound[..., np.newaxis] + values) / (bound + null)[..., np.newaxis]
@@ -40,9 +40,9 @@ def log_capital(
 
 
 def p_value(values: Floats, counts: Floats, bound: float) -> tuple[float, int]:
-    """Return the two-sided p of "the mean is 0", and the side of 0 that it would find ahead.
+    """Return the two-sided p of "the mean is 0", and the side of 0 on which the mean seems to be.
 
-    It is at most ``alpha`` at any scene at all with chance at most ``alpha``.
+    The probability that it is ever at most ``alpha`` is at most ``alpha``.
     """
     above = float(log_capital(values, counts, 0.0, bound))
     below = float(log_capital(-values[::-1], counts[::-1], 0.0, bound))
@@ -71,8 +71,8 @@ def interval(values: Floats, counts: Floats, bound: Floats, level: float) -> tup
 
 
 def fewest_scenes(alpha: float) -> int:
-    """Return after how many scenes that all favour one variant a two-sided p is at most
-    ``alpha``."""
+    """Return the least number of scenes with which p can be at most ``alpha``: all favour one
+    variant."""
     scenes = 1
     while p_value(np.ones(1), np.full(1, float(scenes)), 1.0)[0] > alpha:
         scenes += 1
@@ -89,8 +89,8 @@ def _low(values: Floats, counts: Floats, bound: Floats, level: float) -> Floats:
     high: Floats = (counts * values).sum(axis=-1) / counts.sum(axis=-1)
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
-        # Where all values lie at the lower end, so do both ends, and nothing is doubted there.
-        inside = np.where(middle > -np.asarray(bound), middle, high + 1.0)
-        doubted = log_capital(values, counts, inside, bound) >= needed
-        low, high = np.where(doubted, middle, low), np.where(doubted, high, middle)
+        # If all values are at the lower bound, so are both ends, and no null there is rejected.
+        null = np.where(middle > -np.asarray(bound), middle, high + 1.0)
+        rejected = log_capital(values, counts, null, bound) >= needed
+        low, high = np.where(rejected, middle, low), np.where(rejected, high, middle)
     return np.asarray(low, dtype=np.float64)

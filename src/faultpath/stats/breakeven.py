@@ -1,4 +1,4 @@
-"""The fault frequency from which on a repair pays (paper, Table V and its footnote).
+"""The fault frequency from which on a repair pays off (paper, Table V and its footnote).
 
 In a mixture that meets the fault with probability p the expected difference is
 ``(1 - p) * delta_0 + p * delta_f``. Frequencies at which it cannot be distinguished from 0 are a
@@ -32,18 +32,18 @@ Share = TypeVar("Share", float, Floats)
 def break_even(
     correct: Contrast, faulty: Contrast, level: float = 0.95, fills: Sequence[Ends] = ()
 ) -> BreakEven:
-    """Return at which fault frequencies who is ahead is decided, and at which it is not.
+    """Return the fault frequencies at which one variant is significantly ahead, and the rest.
 
     ``correct`` and ``faulty`` are effects on the same scenes, without and with the fault. At every
-    frequency the test is that of the effects' own intervals, on the mixture: the picture's band
-    (`mixture_curve`) touches 0 exactly where a frequency is in the set. Of ``fills``, both effects
-    as trials that failed may have made them, all have to decide for the same variant.
+    frequency the mixture has the test of the effects' own intervals: the picture's band
+    (`mixture_curve`) touches 0 exactly where a frequency is in the set. ``fills`` are both effects
+    with missing outcomes filled in; all of them have to favour the same variant.
     """
     mixture, *others = (_Mixture(*ends, level) for ends in ((correct, faulty), *fills))
 
-    def undecided(p: Floats) -> Bools:
-        apart = [np.sign(other.value(p)) != np.sign(mixture.value(p)) for other in others]
-        return np.any([*apart, *(mix.undecided(p) for mix in (mixture, *others))], axis=0)
+    def inconclusive(p: Floats) -> Bools:
+        opposed = [np.sign(other.value(p)) != np.sign(mixture.value(p)) for other in others]
+        return np.any([*opposed, *(mix.inconclusive(p) for mix in (mixture, *others))], axis=0)
 
     delta_0, delta_f = correct.value, faulty.value
     grid = np.linspace(0.0, 1.0, _GRID + 1)
@@ -51,7 +51,7 @@ def break_even(
     if delta_0 != delta_f and delta_0 * delta_f <= 0.0:
         p_star = delta_0 / (delta_0 - delta_f) + 0.0
         grid = np.unique(np.append(grid, p_star))
-    pieces = list(pieces_of(undecided, grid))
+    pieces = list(pieces_of(inconclusive, grid))
     while len(pieces) > 2:  # not known to happen; closing a gap only claims less
         gaps = [after[0] - before[1] for before, after in pairwise(pieces)]
         least = int(np.argmin(gaps))
@@ -73,7 +73,7 @@ def break_even(
 
 
 def only(whole: BreakEven, regions: Sequence[Region]) -> BreakEven:
-    """Return what is left where of all regions only some are decided."""
+    """Return a break-even set with only some of its regions left."""
     edges = [0.0, *(end for region in regions for end in (region.low, region.high)), 1.0]
     spans = zip(edges[::2], edges[1::2], strict=True)
     # A set that begins or ends in a single frequency keeps it.
@@ -121,7 +121,7 @@ class _Mixture:
         self.counts: Floats = counts.astype(np.float64)
         self.far = first.scale * first.far, second.scale * second.far
         self.bounds = first.scale * first.bound, second.scale * second.bound
-        self.alike, self.level = first, level
+        self.like, self.level = first, level
         self.ends = correct, faulty
         self.models = correct.estimand == SCENES_AND_SEEDS
 
@@ -129,22 +129,22 @@ class _Mixture:
         """Return the expected difference at a frequency, or at many."""
         return (1.0 - p) * self.ends[0].value + p * self.ends[1].value + 0.0
 
-    def undecided(self, p: Floats) -> Bools:
-        """Return [frequencies]: whether it is undecided there who is ahead."""
+    def inconclusive(self, p: Floats) -> Bools:
+        """Return [frequencies]: whether neither variant is significantly ahead there."""
         if self.models:
             low, high = self.intervals(p)
             return (low <= 0.0) & (high >= 0.0)
         values, counts, far, bound = self._scenes(p)
-        if self.alike.sequential:
+        if self.like.test == "sequential":
             return ~betting.rejects(values, counts, 0.0, far, self.level)
-        if self.alike.graded:
+        if self.like.test == "unconditional":
             return ~score.degrees_rejects(values, counts, bound, 1.0 - self.level)
         return ~score.rejects(values, counts, 0.0, far, score.quantile(self.level))
 
     def intervals(self, p: Floats) -> tuple[Floats, Floats]:
         """Return both ends [frequencies] of the difference's interval at each."""
         values, counts, far, bound = self._scenes(p)
-        low, high = self.alike.ends(values, counts, far, bound, self.level)
+        low, high = self.like.ends(values, counts, far, bound, self.level)
         if self.models:
             one, two = (np.asarray(end.per_seed) for end in self.ends)
             share = p[:, np.newaxis]
@@ -161,14 +161,14 @@ class _Mixture:
         return values, np.broadcast_to(self.counts, values.shape), far, bound
 
 
-def pieces_of(undecided: Callable[[Floats], Bools], grid: Floats) -> tuple[Piece, ...]:
-    """Return where something is not decided, as intervals: seen at ``grid``, ends by bisection."""
-    inside = undecided(grid)
+def pieces_of(condition: Callable[[Floats], Bools], grid: Floats) -> tuple[Piece, ...]:
+    """Return the intervals in which a condition holds: found on ``grid``, their ends bisected."""
+    inside = condition(grid)
     at = np.flatnonzero(inside[1:] != inside[:-1])
     low, high, state = grid[at], grid[at + 1], inside[at]
     for _ in range(_HALVINGS if len(at) else 0):
         middle = 0.5 * (low + high)
-        same = undecided(middle) == state
+        same = condition(middle) == state
         low, high = np.where(same, middle, low), np.where(same, high, middle)
     edges: list[float] = np.where(state, low, high).tolist()
     if inside[0]:

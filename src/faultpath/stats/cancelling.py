@@ -1,11 +1,11 @@
 """Errors that cancel: each alone costs success, both together less than either.
 
-Outcomes are success by scene, a mean over seeds where there are several, and not a number where a
-trial has none: a scene counts in a comparison where both of its sides have one. Errors are named by
-their places in ``singles``, pairs by those of both.
+Outcomes are success by scene, averaged over seeds where there are several, and NaN where a trial
+has none; a comparison uses the scenes in which both have an outcome. An error is named by its index
+in ``singles``, a pair by both indices.
 
-Nothing is tested about errors that add up. On the scale of success rates harms that are additive
-inside look like interactions, because of floor and ceiling.
+Errors that add up are not tested: on the scale of success rates, harms that are additive inside the
+system look like interactions, because of floor and ceiling.
 """
 
 from collections.abc import Mapping, Set
@@ -20,28 +20,28 @@ from faultpath.stats.estimate import ALPHA
 from faultpath.stats.inputs import Floats
 
 LEVEL, MOST = 0.1, 10
-"""Level at which an error goes on to the second stage, and how many do at most."""
+"""Level at which an error goes on to the second stage, and the most errors that do."""
 REGAINED = 0.5
-"""Share of its loss that the worse error has to regain."""
+"""Share of the worse error's loss that the pair has to regain."""
 _DIGITS = 9
-"""Digits of means over seeds, so that those which are equal leave exactly 0."""
+"""Digits of means over seeds, so that equal ones differ by exactly 0."""
 Key: TypeAlias = tuple[int, int]
 Name = TypeVar("Name", int, Key)
 
 
 class StageOne(NamedTuple):
-    """Errors alone in the first stage, and which of them go on."""
+    """Single errors in the first stage, and which of them go on."""
 
     p_values: Floats
     """[errors]: one-sided, not corrected, of "it hurts"."""
     losses: Floats
-    """[errors]: percentage points that it cost."""
+    """[errors]: lost success, percentage points."""
     hurting: tuple[int, ...]
-    """Those that go on, the worst first."""
+    """Errors that go on, the worst first."""
 
 
 class Single(NamedTuple):
-    """An error alone, in the scenes that have an outcome with it and without any."""
+    """A single error, in the scenes that have an outcome both with it and without any error."""
 
     kind: Literal["hurts", "helps"] | None
     none: float
@@ -51,9 +51,9 @@ class Single(NamedTuple):
     p_value: float
     """One-sided, of "it hurts"."""
     corrected_p: float
-    """Holm's, over all errors."""
+    """Holm's over all errors."""
     helps_p: float
-    """The same of "it helps"."""
+    """Corrected in the same way, of "it helps"."""
 
 
 class Pair(NamedTuple):
@@ -67,28 +67,28 @@ class Pair(NamedTuple):
     worse: int
     """The error that alone left less success."""
     regained: float | None
-    """Share of the worse one's loss that both together have not; None where it lost nothing."""
+    """Share of the worse one's loss that both together regain; None where it lost nothing."""
     p_value: float
-    """One-sided, of "both together beat the worse of them alone"; doubled, since that one is chosen
-    by the data."""
+    """One-sided, of "both together beat the worse of them alone"; doubled, because the data choose
+    which one is worse."""
     corrected_p: float | None = None
-    """Holm's, over the pairs of which both errors hurt alone; None for others."""
+    """Holm's over pairs whose errors both hurt alone; None for others."""
     covers_p: float | None = None
-    """Holm's, over pairs of one source, of "the worse one hurts, and both together beat it"."""
+    """Holm's over pairs of one source, of "the worse one hurts, and both together beat it"."""
     kind: Literal["cancel", "covers"] | None = None
     covering: int | None = None
-    """The error that covers for the other one."""
+    """The error that covers the other one."""
 
 
 class Cancelling(NamedTuple):
-    """Errors of a scan, alone and in pairs."""
+    """Single errors and pairs of a scan."""
 
     singles: tuple[Single, ...]
     pairs: dict[Key, Pair]
 
 
 def stage_one(none: Floats, singles: Floats) -> StageOne:
-    """Return which errors go on, of outcomes without an error [scenes] and with each alone
+    """Return which errors go on, from outcomes without an error [scenes] and with each alone
     [errors, scenes]."""
     p_values = ahead(none, singles)
     losses = 100.0 * _means(none - singles)
@@ -104,14 +104,20 @@ def cancelling(
     same_source: Set[Key],
     alpha: float = ALPHA,
 ) -> Cancelling:
-    """Return what the errors did alone and in pairs, from [scenes] without an error, [errors,
-    scenes] with each alone and [scenes] with each pair.
+    """Return the effects of errors alone and in pairs, from their outcomes.
 
     A pair cancels if each error alone hurts, at half of ``alpha``, and both together beat the worse
-    one, at the other half, regain half of its loss, and do no worse than the other one: so that
-    correcting either alone does not help. In a pair of ``same_source`` one covers for
-    the other if that one hurts, both together beat it and regain half of its loss, and the first
-    alone is not ahead of no error.
+    one, at the other half, regain half of its loss, and do no worse than the other one, so that
+    correcting only one of them does not help. In a pair of ``same_source`` one error covers the
+    other if that one hurts, both together beat it and regain half of its loss, and the first alone
+    is not ahead of no error.
+
+    Args:
+        none: Outcomes without an error, [scenes].
+        singles: Outcomes with each error alone, [errors, scenes].
+        pairs: Outcomes with both errors of each pair, [scenes].
+        same_source: Pairs whose errors are of one source.
+        alpha: Level of all statements on pairs together.
     """
     if unknown := same_source - pairs.keys():
         raise ValueError(f"pairs of one source have no outcomes: {sorted(unknown)}")
@@ -125,34 +131,35 @@ def cancelling(
             for key in same_source
         }
     )
-    decided: dict[Key, Pair] = {}
+    results: dict[Key, Pair] = {}
     for key, pair in compared.items():
         (other,) = set(key) - {pair.worse}
-        enough = pair.regained is not None and pair.regained >= REGAINED
-        least = pair.both >= max(pair.first, pair.second)
-        cancels = enough and least and corrected.get(key, 1.0) <= alpha / 2.0
+        regains = pair.regained is not None and pair.regained >= REGAINED
+        beats_both = pair.both >= max(pair.first, pair.second)
+        cancels = regains and beats_both and corrected.get(key, 1.0) <= alpha / 2.0
         gains = alone[other].alone > alone[other].none
-        covered = enough and not cancels and covers.get(key, 1.0) <= alpha and not gains
-        decided[key] = pair._replace(
+        covered = regains and not cancels and covers.get(key, 1.0) <= alpha and not gains
+        results[key] = pair._replace(
             corrected_p=corrected.get(key),
             covers_p=covers.get(key),
             kind="cancel" if cancels else "covers" if covered else None,
             covering=other if covered else None,
         )
-    return Cancelling(alone, decided)
+    return Cancelling(alone, results)
 
 
 def fewest_scenes(n_singles: int, n_pairs: int) -> int:
-    """Return with how many scenes a scan can say anything of each error and each pair at all."""
+    """Return the least number of scenes with which each error and pair can be significant."""
     return power.fewest_scenes(ALPHA / max(n_singles, 2 * n_pairs, 1))  # two-sided: half of alpha
 
 
 def ahead(first: Floats, second: Floats) -> Floats:
     """Return [...]: the one-sided p of "``first`` succeeds more than ``second``" [..., scenes].
 
-    Where scenes differ wholly or not it is exact McNemar's. Else scenes that differ by ``y`` are
-    worth ``(sum |y|)^2 / sum y^2`` that differ wholly, and it is the larger of McNemar's among
-    these and of the score's, as for audits of several seeds (`score.degrees_p_value`).
+    If scenes differ wholly or not at all it is exact McNemar's. Else scenes that differ by ``y``
+    have the effective number ``(sum |y|)^2 / sum y^2`` of wholly discordant ones, and it is the
+    larger of McNemar's among these and the score's, as for audits of several seeds
+    (`score.degrees_p_value`).
     """
     differences = np.asarray(first - second).round(_DIGITS)
     values = np.nan_to_num(differences)
@@ -194,7 +201,7 @@ def _singles(none: Floats, singles: Floats, alpha: float) -> tuple[Single, ...]:
 
 
 def _compared(none: Floats, singles: Floats, pairs: Mapping[Key, Floats]) -> dict[Key, Pair]:
-    """Return what the pairs did beside their errors alone, not yet decided."""
+    """Return the pairs beside their errors alone, with p-values still uncorrected."""
     both = np.stack(list(pairs.values()))
     parts = singles[np.array(list(pairs)).T]  # [2, pairs, scenes]
     outcomes = np.stack([np.broadcast_to(none, both.shape), *parts, both])
@@ -218,7 +225,7 @@ def _compared(none: Floats, singles: Floats, pairs: Mapping[Key, Floats]) -> dic
 
 
 def _means(values: Floats) -> Floats:
-    """Return the mean [...] of those of [..., scenes] that are numbers; NaN without any."""
+    """Return the mean [...] of [..., scenes] without NaN; NaN where all are."""
     known = ~np.isnan(values)
     with np.errstate(invalid="ignore"):
         return np.nansum(values, axis=-1) / known.sum(axis=-1)

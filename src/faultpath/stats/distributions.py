@@ -1,6 +1,6 @@
 """The few distribution functions that the tests and power need, typed.
 
-SciPy ships no type stubs, so everything untyped is kept in this file. ``scipy.special`` is used
+SciPy ships no type stubs, so all untyped calls are in this file. ``scipy.special`` is used
 rather than ``scipy.stats``: it is exact enough, far faster on arrays and quick to import. SciPy
 loads it with the first call, so that what only reads estimates does without.
 """
@@ -36,9 +36,9 @@ def binomial_pmf(successes: ArrayLike, trials: int, probability: ArrayLike) -> F
 
 
 def likely(trials: int, lowest: float, highest: float) -> tuple[int, int]:
-    """Return the first and last number of successes that count, at probabilities in between.
+    """Return the first and last likely number of successes, at probabilities between two.
 
-    Beyond 9 standard deviations and 40 more a binomial has less than 1e-16, by Bernstein's
+    Beyond 9 standard deviations plus 40 a binomial has a probability below 1e-16, by Bernstein's
     inequality.
     """
     spreads = [9.0 * np.sqrt(trials * share * (1.0 - share)) + 40.0 for share in (lowest, highest)]
@@ -59,7 +59,7 @@ def sign_p_value(first: int, second: int) -> float:
 def t_p_value(values: Floats, least_variance: float = 0.0) -> float:
     """Return the two-sided p of Student's t test that ``values`` [n] have mean 0; 1 if all are 0.
 
-    Their variance is taken to be ``least_variance`` at least.
+    Their variance counts as ``least_variance`` at least.
     """
     mean = float(values.mean())
     if mean == 0.0 or len(values) < 2:
@@ -73,7 +73,7 @@ def t_p_value(values: Floats, least_variance: float = 0.0) -> float:
 def t_interval(values: Floats, level: float, least_variance: float = 0.0) -> tuple[Floats, Floats]:
     """Return both ends [...] of Student's interval of the mean of ``values`` [..., n].
 
-    It leaves out 0 where `t_p_value` is below ``1 - level``.
+    It excludes 0 where `t_p_value` is below ``1 - level``.
     """
     n = values.shape[-1]
     error = np.sqrt(np.maximum(values.var(axis=-1, ddof=1), least_variance) / n)
@@ -93,10 +93,10 @@ def normal_quantile(probability: float) -> float:
 
 
 def normal_tails(z: Floats) -> Floats:
-    """Return the chances that a standard normal value lies beyond ``z`` on either side."""
+    """Return the two-sided tail probabilities of the standard normal distribution at ``z``."""
     return np.asarray(2.0 * scipy.special.ndtr(-np.abs(z)), dtype=np.float64)
 
 
 def normal_p_value(z: float) -> float:
-    """Return the chance that a standard normal value lies beyond ``z`` on either side."""
+    """Return the two-sided tail probability of the standard normal distribution at ``z``."""
     return float(2.0 * scipy.special.ndtr(-abs(z)))

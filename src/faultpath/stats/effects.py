@@ -1,8 +1,7 @@
-"""Contrasts of paired variants: success, means, medians (paper, "Statistical Aggregation"),
-windows."""
+"""Contrasts of paired variants: success, means, medians (paper, "Statistical Aggregation")."""
 
-from collections.abc import Sequence
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 
@@ -12,43 +11,46 @@ from faultpath.stats.inputs import Floats, Numbers, by_scene_and_seed, paired
 from faultpath.stats.resamples import Resamples, quantiles
 from faultpath.stats.score import SceneValues
 
-N_RESAMPLES = 10_000
-
 
 def success_effect(
     first: Numbers,
     second: Numbers,
-    resamples: Resamples,
+    resamples: Resamples | None = None,
     *,
     models: bool = False,
     sequential: bool = False,
-    graded: bool = False,
+    test: Literal["unconditional", "conditional"] = "unconditional",
 ) -> Contrast:
-    """Return the difference in success in percentage points, from binary [scenes, seeds].
+    """Return the difference in success in percentage points.
 
-    A pair of which a trial has no outcome (not a number) is left out: a scene's difference is the
-    mean over the seeds that it has, and scenes without any do not count. ``resamples`` are of those
-    that do. ``models`` speaks of newly trained ones as well, of which each seed is one.
-    ``sequential`` says that the number of scenes was not fixed beforehand: its interval and test
-    hold at whatever scene one stops. ``graded`` takes the test by which audits are decided, and its
-    interval, in the place of the paper's.
+    A pair with a missing outcome is left out: a scene's difference is the mean over its other
+    seeds, and a scene without any does not count.
+
+    Args:
+        first: Binary outcomes of the first variant, [scenes, seeds]; NaN where one is missing.
+        second: Outcomes of the second variant in the same scenes.
+        resamples: Resamples of the scenes that count, for percentile intervals; not needed for the
+            test, nor for its interval.
+        models: Whether the result is to hold for newly trained models too; each seed is one.
+        sequential: Whether the number of scenes was not fixed beforehand. Interval and test then
+            hold at whatever scene the audit stops.
+        test: See `faultpath.stats.estimate.TestKind`; the interval goes with the test.
     """
     one, two = paired(first, second, binary=True)
     pairs = one - two
     pairs = pairs[~np.isnan(pairs).all(axis=1)]
     if not len(pairs):
         raise ValueError("no pair has both outcomes, so there is no difference")
-    if models:  # a training without any pair says nothing of trainings
+    if models:  # a training without any pair tells nothing about trainings
         pairs = pairs[:, ~np.isnan(pairs).all(axis=0)]
     # Summed first, so that wins and losses of a scene cancel exactly.
     values = seed_sums(pairs) / pairs.shape[1]
-    scenes = SceneValues.paired(values, 1.0, 100.0, sequential, graded)
+    scenes = SceneValues.paired(values, 1.0, 100.0, "sequential" if sequential else test)
     return replace(_mean(pairs, resamples, "pp", scenes, models), pairs=pairs)
 
 
 def seed_sums(values: Floats) -> Floats:
-    """Return the sum over the seeds [scenes] of ``values`` [scenes, seeds], with the mean of those
-    that a scene has in the place of what is not a number."""
+    """Return sums [scenes] of ``values`` [scenes, seeds]; NaN counts as the mean of its scene."""
     ran = (~np.isnan(values)).sum(axis=1)
     return np.nansum(values, axis=1) * (values.shape[1] / ran)
 
@@ -71,30 +73,31 @@ def success_rate(outcomes: Numbers, resamples: Resamples) -> Contrast:
 
 def _mean(
     values: Floats,
-    resamples: Resamples,
+    resamples: Resamples | None,
     unit: str,
     scenes: SceneValues | None = None,
     models: bool = False,
 ) -> Contrast:
     n_scenes, n_seeds = values.shape
-    resamples.check(n_scenes)
+    if resamples:
+        resamples.check(n_scenes)
     if models and n_seeds < 2:
         raise ValueError("one seed says nothing about new seeds")
     if scenes is None:
         method = "percentile bootstrap of scenes"
-    elif scenes.sequential:
+    elif scenes.test == "sequential":
         method = "confidence sequence by betting on scene means"
     else:
         name = "Wilson" if scenes.centre else "Tango"
-        several = f"score on scene means ({name}'s, cluster-robust)"
-        method = f"score ({name})" if n_seeds == 1 else several
+        by_scene = f"score on scene means ({name}'s, cluster-robust)"
+        method = f"score ({name})" if n_seeds == 1 else by_scene
         method = f"hull of {method} and Student's t over seeds" if models else method
     scale = scenes.scale if scenes else 1.0
     # Sums of binary outcomes are whole numbers and so exact; dividing last makes a resampled mean
     # of 0 exactly 0, on which "the interval excludes 0" depends.
     ran = ~np.isnan(values)
     totals = seed_sums(values)
-    sums = resamples.counts @ totals
+    sums = resamples.counts @ totals if resamples else np.empty(0)
     return Contrast(
         value=float(scale * (values if ran.all() else totals).sum() / (n_scenes * n_seeds)),
         unit=unit,
@@ -115,7 +118,7 @@ def _mean(
 def median_effect(
     first: Numbers, second: Numbers, joint: Numbers, resamples: Resamples
 ) -> Contrast:
-    """Return the median over scenes of the within-scene difference, where both variants count.
+    """Return the median over scenes of the within-scene difference, where both variants succeed.
 
     ``first``, ``second`` and ``joint`` are [scenes, seeds] (or [scenes]); ``joint`` is true where
     both variants succeeded, and the variants' entries elsewhere are not read. Differences are
@@ -143,9 +146,9 @@ def median_effect(
         value=float(np.median(means)),
         draws=quantiles(resamples.counts, means, np.flatnonzero(used), 0.5),
         per_seed=tuple(
-            float(np.median(column[seen]))
-            for column, seen in zip(difference.T, mask.T, strict=True)
-            if seen.any()
+            float(np.median(column[joint_scenes]))
+            for column, joint_scenes in zip(difference.T, mask.T, strict=True)
+            if joint_scenes.any()
         ),
         unit="s",
         method="median of paired differences, percentile bootstrap of scenes",
@@ -153,55 +156,3 @@ def median_effect(
         n_seeds=mask.shape[1],
         resamples=resamples,
     )
-
-
-class WindowQuantiles:
-    """Quantiles over the windows of some scenes, all on the same resamples of these scenes.
-
-    Windows of a scene share its trial and disturbances, so they are not independent: a resample
-    takes or leaves a scene with all its windows. Arrays are [windows, seeds], or
-    [windows] for one seed; a quantile is taken over the windows of each seed, and then the mean
-    over seeds (paper, Table VI: "mean of per-seed window medians").
-
-    Args:
-        scenes: Scene of each window, [windows].
-        seed: Seed of the resamples; the scenes themselves name the stream.
-        n_resamples: How many.
-    """
-
-    def __init__(
-        self, scenes: Sequence[str], *, seed: int = 0, n_resamples: int = N_RESAMPLES
-    ) -> None:
-        if not scenes:
-            raise ValueError("no window, so there is no quantile")
-        names, self._scene = np.unique(np.asarray(scenes), return_inverse=True)
-        label = "windows/" + "/".join(map(str, names))
-        self.resamples = Resamples.draw(label, len(names), seed=seed, n_resamples=n_resamples)
-
-    def value(self, values: Numbers, q: float, unit: str = "") -> Contrast:
-        """Return the quantile ``q`` of ``values``."""
-        seen, drawn = self._quantiles(by_scene_and_seed(values), q)
-        return self._effect(seen, drawn, unit, f"quantile {q:g} over windows")
-
-    def _quantiles(self, values: Floats, q: float) -> tuple[Floats, Floats]:
-        """Return those of the scenes as they are [seeds], and the resampled [resamples, seeds]."""
-        if not 0.0 < q < 1.0:
-            raise ValueError(f"a quantile lies between 0 and 1, not at {q}")
-        if len(values) != len(self._scene):
-            raise ValueError(f"{len(values)} values are not of {len(self._scene)} windows")
-        counts = np.concatenate([np.ones((1, self.resamples.n_scenes)), self.resamples.counts])
-        every = [quantiles(counts, column, self._scene, q) for column in values.T]
-        rows: Floats = np.stack(every, axis=1)
-        return rows[0], rows[1:]
-
-    def _effect(self, seen: Floats, drawn: Floats, unit: str, what: str) -> Contrast:
-        return Contrast(
-            value=float(seen.mean()),
-            draws=drawn.mean(axis=1),
-            per_seed=tuple(float(value) for value in seen),
-            unit=unit,
-            method=f"{what}, percentile bootstrap of scenes",
-            n_scenes=self.resamples.n_scenes,
-            n_seeds=len(seen),
-            resamples=self.resamples,
-        )

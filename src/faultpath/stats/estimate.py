@@ -1,7 +1,7 @@
 """Results of the statistics: estimates, tests and break-even frequencies as data.
 
-Every model is frozen, refuses unknown fields and refuses NaN, so a number that does not exist has
-to be said with ``None`` and a reason. Differences are always *first minus second*.
+Models are frozen and refuse unknown fields and NaN, so a number that does not exist is ``None``.
+Differences are always *first minus second*.
 """
 
 from typing import Literal, NamedTuple, Self, TypeAlias
@@ -12,6 +12,13 @@ from faultpath.core.results import Frozen
 
 ALPHA = 0.05
 Sign: TypeAlias = Literal[-1, 0, 1]
+TestKind: TypeAlias = Literal["unconditional", "conditional", "sequential"]
+"""How paired outcomes are tested.
+
+`unconditional`: Lloyd's E+M test, for several seeds with the score; audits use it. `conditional`:
+exact McNemar or the sign test, which take the number of discordant scenes as fixed; the paper uses
+them. `sequential`: bets, valid whenever the audit stops.
+"""
 
 SCENES = "new scenes like these, for these trained models and recorded executions"
 SCENES_AND_SEEDS = "new scenes like these and models newly trained with other seeds"
@@ -35,7 +42,7 @@ class Estimate(Frozen, allow_inf_nan=False):
     n_seeds: int = Field(ge=1)
     per_seed: tuple[float, ...] | None = None
     won: tuple[tuple[int, int], ...] | None = None
-    """Seed by seed: in how many scenes only the first succeeded, and in how many the second."""
+    """Seed by seed: number of scenes in which only the first succeeded, or only the second."""
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
@@ -52,26 +59,26 @@ class Estimate(Frozen, allow_inf_nan=False):
 
 
 class PairedTest(NamedTuple):
-    """A two-sided test of no difference, and its place in the family that is decided together."""
+    """A two-sided test of no difference, and its correction within a family of tests."""
 
     name: str
     p_value: float
     leans: Sign
-    """Side of 0 that it would find ahead, did it reject."""
+    """Side of 0 on which the difference would be significant, if the test rejected."""
     sign: Sign = 0
     """Side of 0 on which the difference is significant within the family; 0 where it is not."""
     corrected_p: float | None = None
-    """Holm's; `None` outside of a family, as the next."""
+    """Holm's; like `critical_p`, `None` outside of a family."""
     critical_p: float | None = None
     """Largest p at which it would be significant, given the others' p-values."""
 
     def rejects(self, alpha: float = ALPHA) -> bool:
-        """Return whether the test alone rejects no difference at level ``alpha``."""
+        """Return whether this test by itself rejects "no difference" at level ``alpha``."""
         return self.p_value <= alpha
 
 
 class Region(Frozen, allow_inf_nan=False):
-    """Fault frequencies at which it is decided who is ahead; ``sign`` 1: the first variant."""
+    """Fault frequencies at which one variant is significantly ahead; ``sign`` 1: the first."""
 
     low: float = Field(ge=0.0, le=1.0)
     high: float = Field(ge=0.0, le=1.0)
@@ -83,8 +90,8 @@ class BreakEven(Frozen, allow_inf_nan=False):
 
     ``pieces`` are the frequencies at which the expected difference cannot be distinguished from 0,
     a confidence set for the break-even frequency: one interval, none, all or two pieces.
-    ``regions`` are what is left of the range, where it is decided who is ahead. ``p_star`` is where
-    the point estimates cross, None where they do not; it decides nothing.
+    ``regions`` are the rest of the range, where one variant is significantly ahead. ``p_star`` is
+    where the point estimates cross, None where they do not; no statement rests on it.
     """
 
     p_star: float | None = Field(ge=0.0, le=1.0)
@@ -97,8 +104,8 @@ class BreakEven(Frozen, allow_inf_nan=False):
 
 
 TESTS = "E+M test and weighted Holm"
-"""How the effects of an audit are tested and adjusted, in words."""
+"""Name of the test and correction of an audit's effects."""
 EM = "E+M (Lloyd)"
 """Name of the test of one seed."""
 DEGREES = "E+M and score of scenes"
-"""Name of that of several seeds, and of changes."""
+"""Name of the test of several seeds, and of changes."""

@@ -1,4 +1,4 @@
-"""Checks on what callers pass in: a wrong array is a programming error, hence ValueError."""
+"""Checks of arrays; a wrong one is a programming error, hence ValueError."""
 
 from typing import Any
 
@@ -12,7 +12,7 @@ Floats = NDArray[np.float64]
 def by_scene_and_seed(values: Numbers, name: str = "values", *, binary: bool = False) -> Floats:
     """Return ``values`` ([scenes, seeds], or [scenes] for one seed) as float64 [scenes, seeds].
 
-    ``binary`` ones are zeros and ones, and not a number where a trial has no outcome.
+    ``binary`` values are 0 and 1, and NaN where a trial has no outcome.
     """
     array = np.asarray(values, dtype=np.float64)
     array = array[:, np.newaxis] if array.ndim == 1 else array
@@ -29,7 +29,7 @@ def by_scene_and_seed(values: Numbers, name: str = "values", *, binary: bool = F
 
 
 def paired(first: Numbers, second: Numbers, *, binary: bool = False) -> tuple[Floats, Floats]:
-    """Return both variants as float64 [scenes, seeds], refusing variants of different shape."""
+    """Return both variants as float64 [scenes, seeds]; `ValueError` for different shapes."""
     one = by_scene_and_seed(first, "first", binary=binary)
     two = by_scene_and_seed(second, "second", binary=binary)
     if one.shape != two.shape:

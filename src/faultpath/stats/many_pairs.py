@@ -1,11 +1,11 @@
-"""The E+M test (`unconditional`) of so many pairs that E cannot be summed for every table.
+"""The E+M test (`unconditional`) of too many pairs to sum E for every table.
 
 *E* only orders the tables, so it may be approximated: up to `_SUMMED` discordant pairs it is summed
-as ever; beyond, it is the normal chance of ``z`` with Edgeworth's next term. The binomial's steps
-need no correction, since E averages over even and odd numbers of discordant pairs, unless all
-pairs are discordant. *M* is the largest chance over all shares as ever, so the level holds.
+exactly; beyond, it is the normal probability of ``z`` with Edgeworth's next term. The binomial's
+steps need no correction, since E averages over even and odd numbers of discordant pairs, unless all
+pairs are discordant. *M* is still the largest probability over all shares, so the level holds.
 
-It costs some ``n_pairs`` operations a share that matters, not their square.
+It takes some ``n_pairs`` operations for each share of discordant pairs, not their square.
 """
 
 from functools import cached_property
@@ -24,19 +24,19 @@ from faultpath.stats.inputs import Floats
 from faultpath.stats.null_law import Counts, EStep, bounds, sign_tails
 
 _SUMMED, _ROWS = 256, 480
-"""Discordant pairs up to which E is summed, and up to which some are expected beside so many: at
-least 12 standard deviations more."""
+"""Largest number of discordant pairs for which E is summed, and the largest that is then expected:
+at least 12 standard deviations more."""
 _LAST = 16
-"""Numbers of discordant pairs, down from all pairs, among which binomial steps show."""
+"""Numbers of discordant pairs, down from all pairs, at which the binomial's steps matter."""
 _PEAKS, _FINER = 3, 9
 """As in `null_law`; shares lie less than a standard deviation apart."""
 
 _NEAR, _BEYOND = 1e-7, 1e-4
-"""Relative: how closely the critical chance is looked for, and how far steps towards it go on."""
+"""Relative precision of the critical probability, and overshoot of steps towards it."""
 
 
 class ManyPairs:
-    """The law of tables of one large number of pairs under no difference."""
+    """Distribution of tables of one large number of pairs under no difference."""
 
     def __init__(self, n_pairs: int) -> None:
         self.n_pairs = n_pairs
@@ -50,7 +50,7 @@ class ManyPairs:
         self.shares: Floats = np.sin(np.linspace(0.0, np.pi / 2.0, points)) ** 2
 
     def chance(self, z: Floats, discordants: Floats) -> Floats:
-        """Return [tables]: the E step's chance; the discordant pairs need not be whole."""
+        """Return [tables]: the E step's probability; discordant pairs need not be whole numbers."""
         discordants = np.minimum(discordants, self.n_pairs)
         many = np.maximum(discordants, 1.0)
         z_even = np.maximum(z - self._step(many) / np.sqrt(many), 0.0)
@@ -63,7 +63,7 @@ class ManyPairs:
         return chance
 
     def region(self, chance: float, inside: Counts, outside: Counts) -> Counts:
-        """Return [discordants]: the largest smaller count that is as far out as ``chance``."""
+        """Return [discordants]: the largest smaller count at least as extreme as ``chance``."""
         few = slice(0, _SUMMED + 1)
         region = np.empty(self.n_pairs + 1, dtype=np.int64)
         region[few] = self.e_step.region(chance, inside[few], outside[few])
@@ -79,10 +79,10 @@ class ManyPairs:
         return region
 
     def critical(self, alpha: float) -> tuple[float, Counts]:
-        """Return the largest chance with a p of at most ``alpha``, and its region.
+        """Return the largest probability with a p of at most ``alpha``, and its region.
 
-        A p is nearly the chance itself, so the next one tried is where they would keep their ratio,
-        and a little beyond, to close in from both sides; every third halves what is left.
+        The p is nearly proportional to the E step's probability, which gives the next trial value,
+        plus a little overshoot to close in from both sides; every third step halves the interval.
         """
         inside, outside = bounds(self.n_pairs)
         low, high, aim, step = 0.0, 1.0, alpha, 0
@@ -100,13 +100,13 @@ class ManyPairs:
         return low, inside
 
     def worst(self, region: Counts, limit: float = 1.0) -> float:
-        """Return the largest chance of a region over the shares of discordant pairs.
+        """Return the largest probability of a region over the shares of discordant pairs.
 
-        Beyond ``limit`` it is not looked for closely.
+        Above ``limit`` it is not refined.
         """
         often = self._often(region)
         inner = [chances @ often[first : first + len(chances)] for first, chances in self.mixed]
-        at = np.array([0.0, *inner, often[-1]])  # without and with nothing but discordant pairs
+        at = np.array([0.0, *inner, often[-1]])  # at no and at all pairs discordant
         best = float(at.max())
         if best > limit:
             return best
@@ -124,13 +124,14 @@ class ManyPairs:
 
     @cached_property
     def mixed(self) -> list[tuple[int, Floats]]:
-        """By inner share: the first number of discordant pairs that is expected, and the chances
-        of it and of those that follow."""
+        """By inner share: the first likely number of discordant pairs, and the probabilities of it
+        and of the following ones."""
         parts = (self._mixed(share) for share in self.shares[1:-1, np.newaxis])
         return [(first, chances[0]) for first, chances in parts]
 
     def _mixed(self, shares: Floats) -> tuple[int, Floats]:
-        """Return the first expected number of discordant pairs and [shares, expected] chances."""
+        """Return the first likely number of discordant pairs, and probabilities [shares,
+        likely]."""
         size = self.n_pairs
         first, last = likely(size, float(shares[0]), float(shares[-1]))
         total = np.arange(first, last + 1)
@@ -139,10 +140,11 @@ class ManyPairs:
         return first, np.exp(ways + total * odds[0] + (size - total) * odds[1])
 
     def _often(self, region: Counts) -> Floats:
-        """Return [discordants]: the chance of the region among so many discordant pairs.
+        """Return [discordants]: the probability of the region given each number of discordant
+        pairs.
 
-        Beyond those that E sums it follows from one number to the next: one more discordant pair
-        takes half the chance of the region's edge out, and a wider region takes it in.
+        Beyond `_SUMMED` it follows by recursion: one more discordant pair takes half of the
+        probability at the region's edge out, and a wider region takes it in.
         """
         few, last = np.arange(_SUMMED + 1), self.n_pairs + 1 - _LAST
         edge = region[_SUMMED + 1 : last]
@@ -165,12 +167,12 @@ class ManyPairs:
         )
 
     def _step(self, discordants: Floats) -> Floats:
-        """Return [tables]: by how much less both counts differ where the binomial's steps show.
+        """Return [tables]: the correction of the counts' difference for the binomial's steps.
 
-        By a whole one where all pairs are discordant: then their number is no longer even or odd
-        by chance.
+        It is 1 where all pairs are discordant, because their number is then no longer even or odd
+        at random.
         """
-        left = self.n_pairs - discordants
-        step, last = np.zeros_like(left), left < _LAST
-        step[last] = (1.0 - 2.0 * left[last] / self.n_pairs) ** self.n_pairs
+        concordant = self.n_pairs - discordants
+        step, last = np.zeros_like(concordant), concordant < _LAST
+        step[last] = (1.0 - 2.0 * concordant[last] / self.n_pairs) ** self.n_pairs
         return step

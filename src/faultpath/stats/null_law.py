@@ -1,4 +1,4 @@
-"""Both steps of the E+M test (`unconditional`), summed over every table of a number of pairs."""
+"""Both steps of the E+M test (`unconditional`), summed exactly over all tables."""
 
 from typing import NamedTuple
 
@@ -11,41 +11,42 @@ from faultpath.stats.inputs import Floats
 Counts = NDArray[np.int64]
 
 TIE = 1e-9
-"""Relative: what differs by less is as far out, but for rounding."""
+"""Relative difference below which two tables are equally extreme, up to rounding."""
 _SPREAD = 9.0
-"""Standard deviations of a number of discordant pairs beyond which none is expected."""
+"""Standard deviations beyond which a number of discordant pairs is neglected."""
 _PEAKS, _FINER = 3, 25
-"""Peaks of the chance over the shares that are looked at closely, and at how many points."""
+"""Peaks of the probability over the shares that are refined, and the points of each refinement."""
 
 
 class EStep(NamedTuple):
-    """Chances of what is expected beside each number of discordant pairs, from 0 on."""
+    """Probabilities of other numbers of discordant pairs, given each observed number."""
 
     tails: Floats
-    """[discordants, 1 + fewer]: the chance of so few or fewer on either side."""
+    """[discordants, 1 + fewer]: probability of at most this smaller count on either side."""
     others: Counts
-    """[discordants, expected]: numbers of discordant pairs that are expected beside that one."""
+    """[discordants, expected]: likely numbers of discordant pairs, given the observed one."""
     chances: Floats
-    """[discordants, expected]: of each of them."""
+    """[discordants, expected]: their probabilities."""
 
     def expected(self, total: Counts, fewer: Counts) -> Floats:
-        """Return [tables]: the E step's chance of tables whose counts differ."""
+        """Return [tables]: the E step's probability of tables whose counts differ."""
         z = (total - 2 * fewer) / np.sqrt(np.maximum(total, 1))
         return self.chance(z, self.others[total], self.chances[total])
 
     def chance(self, z: Floats, others: Counts, chances: Floats) -> Floats:
-        """Return [tables]: the chance of a statistic as large as ``z``, with these of `near`."""
+        """Return [tables]: the probability of a statistic of at least ``z``, given those of
+        `near`."""
         apart = z[:, np.newaxis] * np.sqrt(others)
-        # Halves of whole numbers and of roots of fractions: as near as this only where they agree.
+        # The tolerance only matters where both are equal but for rounding.
         most = np.maximum(np.floor((others - apart) / 2.0 + 1e-9), -1.0).astype(np.int64)
         most[others == 0] = -1
         return (chances * self.tails[others, most + 1]).sum(axis=1)
 
     def region(self, chance: float, inside: Counts, outside: Counts) -> Counts:
-        """Return [discordants]: the largest smaller count that is as far out as ``chance``.
+        """Return [discordants]: the largest smaller count at least as extreme as ``chance``.
 
-        It lies between those of the regions ``inside`` and ``outside``. Bisected: with a smaller
-        one a table is further out.
+        It is bisected between the regions ``inside`` and ``outside``, since a table with a smaller
+        count is more extreme.
         """
         low, high = inside.copy(), outside + 1
         high[0] = 0
@@ -58,27 +59,27 @@ class EStep(NamedTuple):
 
 
 class NullLaw:
-    """The law of tables of one number of pairs under no difference."""
+    """Distribution of tables of one number of pairs under no difference."""
 
     def __init__(self, n_pairs: int) -> None:
         self.n_pairs = n_pairs
         self.e_step = EStep(sign_tails(n_pairs), *near(n_pairs, np.arange(n_pairs + 1.0)))
         points = 32 + 16 * int(np.ceil(np.sqrt(n_pairs)))
         self.shares: Floats = np.sin(np.linspace(0.0, np.pi / 2.0, points)) ** 2
-        """Shares of discordant pairs, at which the largest chance is looked for."""
+        """Shares of discordant pairs over which the probability is maximised."""
         self.mixed = _mixed(n_pairs, self.shares)
-        """[shares, discordants]: the chance of each number of discordant pairs."""
+        """[shares, discordants]: probability of each number of discordant pairs."""
 
     def chance(self, z: Floats, discordants: Floats) -> Floats:
-        """Return [tables]: the E step's chance; the discordant pairs need not be whole."""
+        """Return [tables]: the E step's probability; discordant pairs need not be whole numbers."""
         return self.e_step.chance(z, *near(self.n_pairs, discordants))
 
     def region(self, chance: float, inside: Counts, outside: Counts) -> Counts:
-        """Return that of the E step."""
+        """Return the region of the E step."""
         return self.e_step.region(chance, inside, outside)
 
     def critical(self, alpha: float) -> tuple[float, Counts]:
-        """Return the largest chance with a p of at most ``alpha``, and its region."""
+        """Return the largest probability with a p of at most ``alpha``, and its region."""
         inside, outside = bounds(self.n_pairs)
         low, high = 0.0, 1.0
         while high - low > TIE * high:
@@ -91,9 +92,9 @@ class NullLaw:
         return low, inside
 
     def worst(self, region: Counts, limit: float = 1.0) -> float:
-        """Return the largest chance of a region over the shares of discordant pairs.
+        """Return the largest probability of a region over the shares of discordant pairs.
 
-        Beyond ``limit`` it is not looked for closely.
+        Above ``limit`` it is not refined.
         """
         often = self.e_step.tails[np.arange(len(region)), region + 1]
         at = self.mixed @ often
@@ -113,13 +114,13 @@ class NullLaw:
 
 
 def bounds(n_pairs: int) -> tuple[Counts, Counts]:
-    """Return the regions of no table and of every table whose counts differ."""
+    """Return the regions of no table, and of all tables whose counts differ."""
     total = np.arange(n_pairs + 1)
     return np.full_like(total, -1), (total - 1) // 2
 
 
 def sign_tails(most: int) -> Floats:
-    """Return [discordants, 1 + fewer]: the chance of so few or fewer on either side."""
+    """Return [discordants, 1 + fewer]: probability of at most this smaller count on either side."""
     split = np.zeros(most // 2 + 2)  # of one more discordant pair with each row of the tails
     split[0] = 1.0
     tails = np.zeros((most + 1, len(split)))
@@ -132,8 +133,8 @@ def sign_tails(most: int) -> Floats:
 
 
 def near(n_pairs: int, discordants: Floats) -> tuple[Counts, Floats]:
-    """Return [tables, expected]: how many pairs may be discordant beside so many, and how likely
-    that is."""
+    """Return [tables, expected]: likely numbers of discordant pairs, given the observed one, and
+    their probabilities."""
     width = min(n_pairs + 1, 2 * int(np.ceil(_SPREAD * np.sqrt(n_pairs) / 2.0)) + 1)
     start = np.clip(np.rint(discordants).astype(np.int64) - width // 2, 0, n_pairs + 1 - width)
     others = start[:, np.newaxis] + np.arange(width)

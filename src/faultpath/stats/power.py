@@ -1,10 +1,11 @@
-"""Power of the rule that decides, test and score interval, and the least difference it detects.
+"""Power of test and score interval together, and the least difference that they detect.
 
-That difference stands beside every "not detected", because not detecting one is not equivalence.
-There is none for newly trained models: a few trainings do not know their own spread.
+That difference is shown beside every "not significant", which does not mean equal. There is none
+for newly trained models: a few trainings do not determine their own spread.
 """
 
 from functools import lru_cache
+from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,23 +17,30 @@ from faultpath.stats.estimate import ALPHA
 from faultpath.stats.inputs import Floats, Numbers, by_scene_and_seed
 from faultpath.stats.score import degrees_rejects, quantile, reach, rejects
 
+FixedSize: TypeAlias = Literal["unconditional", "conditional"]
+"""Tests of a number of scenes that was fixed beforehand; see `estimate.TestKind`."""
+
 LEVEL = 0.95
-"""Level of the interval that has to exclude 0 as well."""
+"""Level of the interval that has to exclude 0 too."""
 AUDITS = 2000
 """Simulated audits, where power has no closed form."""
 _PRECISION = 1e-3
 _MISSING = 2.0
-"""Stands for a pair without both outcomes, where columns of pairs are compared."""
+"""Marks a pair with a missing outcome, where columns of pairs are compared."""
 _PRIOR_ALIKE, _PRIOR_SCENES = 0.5, 1.0
-"""Counts of seeds that end alike, taken as seen before anything was."""
+"""Prior counts of seeds that end alike."""
 
 
 def fewest_scenes(alpha: float = ALPHA) -> int:
-    """Return how many scenes a test at ``alpha`` needs at least to detect anything at all.
+    """Return the least number of scenes with which a test at ``alpha`` can reject.
 
     If all favour one variant, sign test and E+M test have the same p, ``2 ** (1 - scenes)``.
     """
     return int(np.ceil(1.0 + np.log2(1.0 / alpha) - 1e-12))
+
+
+MIN_SCENES = fewest_scenes()
+"""With fewer scenes nothing can be significant at 0.05."""
 
 
 def rule_power(
@@ -41,7 +49,7 @@ def rule_power(
     difference: float,
     alpha: float = ALPHA,
     *,
-    graded: bool = False,
+    test: FixedSize = "unconditional",
 ) -> float:
     """Return the exact power of one seed's test at ``alpha`` together with Tango's 95 % interval.
 
@@ -58,7 +66,7 @@ def rule_power(
         return 0.0
     first, last = likely(n_scenes, discordant_rate, discordant_rate)
     discordants = np.arange(first, last + 1)
-    critical = _critical(n_scenes, alpha, graded)[discordants]
+    critical = _critical(n_scenes, alpha, test)[discordants]
     favour = 0.5 * (1.0 + abs(difference) / discordant_rate)
     detects = binomial_cdf(critical, discordants, favour)
     detects = detects + binomial_cdf(critical, discordants, 1.0 - favour)
@@ -66,10 +74,13 @@ def rule_power(
 
 
 @lru_cache(maxsize=64)
-def _critical(n_scenes: int, alpha: float, graded: bool) -> NDArray[np.int64]:
-    """Return per number of discordants the largest smaller count that detects; -1: none does."""
+def _critical(n_scenes: int, alpha: float, test: FixedSize) -> NDArray[np.int64]:
+    """Return [discordants]: the largest smaller count that is significant; -1: none."""
     total = np.arange(n_scenes + 1)
-    tested = unconditional.critical(n_scenes, alpha)[1] if graded else _sign_critical(total, alpha)
+    if test == "unconditional":
+        tested = unconditional.critical(n_scenes, alpha)[1]
+    else:
+        tested = _sign_critical(total, alpha)
     # Tango's statistic of no difference is (first - second)^2 / discordants.
     excluded = np.ceil((total - quantile(LEVEL) * np.sqrt(total)) / 2.0) - 1.0
     return np.minimum(tested, np.maximum(excluded, -1.0).astype(np.int64))
@@ -78,7 +89,7 @@ def _critical(n_scenes: int, alpha: float, graded: bool) -> NDArray[np.int64]:
 def _sign_critical(total: NDArray[np.int64], alpha: float) -> NDArray[np.int64]:
     """Return [discordants]: the largest smaller count that the sign test rejects; -1: none.
 
-    Bisected, since what is rejected also is with fewer, and first of all near the normal law's.
+    Bisected, since a smaller count is rejected too, and first near the normal approximation.
     """
     normal = np.floor((total - quantile(1.0 - alpha) * np.sqrt(total)) / 2.0).astype(np.int64)
     low, high = np.maximum(normal - 2, -1), np.clip(normal + 2, 0, total)
@@ -93,7 +104,7 @@ def _sign_critical(total: NDArray[np.int64], alpha: float) -> NDArray[np.int64]:
 
 
 def simulated_power(
-    n_scenes: int, seeds: int, rate: float, lean: float, alike: float, alpha: float, graded: bool
+    n_scenes: int, seeds: int, rate: float, lean: float, alike: float, alpha: float, test: FixedSize
 ) -> float:
     """Return the power of several seeds' test and score interval, from `AUDITS` simulated audits.
 
@@ -111,17 +122,17 @@ def simulated_power(
     values, chances = np.arange(-seeds, seeds + 1) / seeds, np.maximum(chances, 0.0) / chances.sum()
     stream = generator("detectable", "", n_scenes)
     counts = stream.multinomial(n_scenes, chances, size=AUDITS).astype(np.float64)
-    return float(detected(values, counts, alpha, graded).mean())
+    return float(significant(values, counts, alpha, test).mean())
 
 
-def detected(
-    values: Floats, counts: Floats, alpha: float, graded: bool = False
+def significant(
+    values: Floats, counts: Floats, alpha: float, test: FixedSize = "unconditional"
 ) -> NDArray[np.bool_]:
-    """Return [audits]: whether test and interval of several seeds agree.
+    """Return [audits]: whether test and interval of several seeds find the same side ahead.
 
     ``counts`` [audits, values] says how many scenes differ by each of ``values``.
     """
-    if graded:
+    if test == "unconditional":
         return degrees_rejects(values, counts, 1.0, alpha)
     first = counts[:, values > 0].sum(axis=1)
     second = counts[:, values < 0].sum(axis=1)
@@ -134,21 +145,22 @@ def detected(
 def detectable(
     pairs: Numbers,
     *,
-    graded: bool = False,
+    test: FixedSize = "unconditional",
     alpha: float = ALPHA,
     power: float = 0.8,
     on_top: bool = False,
 ) -> float | None:
-    """Return the detectable difference in success (pp) of pairs [scenes, seeds]: 1, 0 or -1, and
-    not a number where a pair has not both outcomes.
+    """Return the detectable difference in success (pp), given the pairs of an audit.
 
-    None where the test cannot reject at ``alpha`` with that power, whatever the difference. As many
-    pairs are taken to be discordant as were, or with all of them on one side what the difference
-    needs; without any, the upper end of the 95 % Clopper-Pearson interval of their share. Seeds
-    agree within a scene as often as was seen; copies of a seed count once.
+    ``pairs`` [scenes, seeds] are 1, 0 or -1, and NaN where an outcome is missing.
 
-    ``on_top`` takes what was seen for noise that favours neither variant, and the difference for
-    wins beside it, so that pairs are discordant more often: the number to plan by.
+    None where the test cannot reject at ``alpha`` with that power, whatever the difference. The
+    share of discordant pairs is the observed one, or if larger the difference itself; with none
+    observed, the upper end of its 95 % Clopper-Pearson interval. Seeds of a scene agree as often as
+    observed; copies of a seed count once.
+
+    With ``on_top`` the observed discordant pairs are noise that favours neither variant and the
+    difference comes on top of them, so that more pairs are discordant: the number to plan by.
     """
     filled = by_scene_and_seed(np.nan_to_num(pairs, nan=_MISSING), "pairs") + 0.0  # never -0.0
     # Columns as bytes: NumPy's sort of columns takes each scene for a field.
@@ -160,12 +172,10 @@ def detectable(
     if rate == 0.0:
         rate = 1.0 - ((1.0 - LEVEL) / 2.0) ** (1.0 / n_scenes)
     elif n_seeds > 1:
-        # Two seeds' product has the mean ``alike * rate + (1 - alike) * mean ** 2``. A little is
-        # added as if seen, on either side, because few discordant pairs tell little.
+        # Two seeds' product has the mean ``alike * rate + (1 - alike) * mean ** 2``. Prior counts
+        # are added on either side, because few discordant pairs tell little.
         sums = seeds.sum(axis=1) ** 2 - np.abs(seeds).sum(axis=1)
-        together = ran.sum(axis=1) * (
-            ran.sum(axis=1) - 1
-        )  # ordered pairs of seeds that a scene has
+        together = ran.sum(axis=1) * (ran.sum(axis=1) - 1)  # ordered pairs of a scene's seeds
         products = n_scenes * float(sums.sum()) / max(1, int(together.sum()))
         by_chance = n_scenes * float(seeds.sum() / ran.sum()) ** 2
         seen = n_scenes * rate - by_chance + _PRIOR_SCENES
@@ -174,9 +184,9 @@ def detectable(
     def reached(difference: float) -> float:
         share = min(1.0, rate + difference if on_top else max(rate, difference))
         if alike == 1.0:
-            return rule_power(n_scenes, share, difference, alpha, graded=graded)
+            return rule_power(n_scenes, share, difference, alpha, test=test)
         lean = difference / share
-        return simulated_power(n_scenes, n_seeds, share, lean, alike, alpha, graded)
+        return simulated_power(n_scenes, n_seeds, share, lean, alike, alpha, test)
 
     if reached(1.0) < power:
         return None

@@ -1,4 +1,4 @@
-"""Scene resamples, drawn once and shared by every effect that is to be bootstrapped jointly."""
+"""Scene resamples, drawn once and shared by all effects that are bootstrapped jointly."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -10,10 +10,12 @@ from numpy.typing import NDArray
 from faultpath.core.streams import generator
 from faultpath.stats.inputs import Floats
 
+ROUNDING = 1e-12
+"""Draws that spread no more than this are all the same."""
 _BLOCK = 50_000
-"""Counts worked on at a time: with what comes between, they fit into a core's own cache."""
+"""Counts of one pass: with intermediate results they fit into a core's own cache."""
 _SLACK = 1e-9
-"""On a count of values: q times a count may miss the whole number that it is by rounding."""
+"""Tolerance on a count of values, since q times a count may miss a whole number by rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,31 +36,31 @@ class Resamples:
         """Draw from the stream ("bootstrap", label, seed); ``label`` names the scene library."""
         if n_scenes < 1 or n_resamples < 1:
             raise ValueError(f"cannot draw {n_resamples} resamples of {n_scenes} scenes")
-        stream, drawn = generator("bootstrap", label, seed), np.empty((n_resamples, n_scenes))
-        for rows in _blocks(n_resamples, n_scenes):  # where they end does not matter
-            part = drawn[rows]
+        stream, counts = generator("bootstrap", label, seed), np.empty((n_resamples, n_scenes))
+        for rows in _blocks(n_resamples, n_scenes):  # their size does not change the draws
+            part = counts[rows]
             chosen = stream.integers(0, n_scenes, size=part.shape)
             chosen += n_scenes * np.arange(len(part))[:, np.newaxis]
             part[:] = np.bincount(chosen.ravel(), minlength=part.size).reshape(part.shape)
-        drawn.setflags(write=False)  # shared by many effects
-        return cls(label=label, seed=seed, counts=drawn)
+        counts.setflags(write=False)  # shared by many effects
+        return cls(label=label, seed=seed, counts=counts)
 
     @property
     def n_resamples(self) -> int:
-        """Return the number of resamples."""
+        """Number of resamples."""
         return self.counts.shape[0]
 
     @property
     def n_scenes(self) -> int:
-        """Return the number of scenes in the library and in each resample."""
+        """Number of scenes in the library and in each resample."""
         return self.counts.shape[1]
 
     def blocks(self) -> Iterator[Floats]:
-        """Yield ``counts`` in order, a few resamples at a time, for work that copies them."""
+        """Yield ``counts`` in order, a few resamples at a time, to limit the size of copies."""
         return (self.counts[rows] for rows in _blocks(self.n_resamples, self.n_scenes))
 
     def check(self, n_scenes: int) -> None:
-        """Refuse outcomes of another number of scenes than was resampled."""
+        """Raise `ValueError` for outcomes of another number of scenes."""
         if n_scenes != self.n_scenes:
             raise ValueError(
                 f"the outcomes have {n_scenes} scenes, the resamples {self.label!r} have "
@@ -66,22 +68,22 @@ class Resamples:
             )
 
     def same_as(self, other: "Resamples") -> bool:
-        """Return whether both hold the same draws, so that effects on them are joint."""
+        """Return whether both hold the same draws, so that effects may be combined draw by draw."""
         return self is other or np.array_equal(self.counts, other.counts)
 
 
 def quantiles(counts: Floats, values: Floats, scenes: NDArray[np.intp], q: float) -> Floats:
-    """Return the quantile ``q`` of ``values`` [n] in every resample that has any of them.
+    """Return the quantile ``q`` of ``values`` [n] in every resample that holds any of them.
 
-    A resample, a row of ``counts`` [resamples, scenes], has each value as often as it has its scene
-    ``scenes`` [n]. Where q of the number of values is a whole number the quantile is the mean of
-    the two values beside it, so that 0.5 is the median.
+    A resample, a row of ``counts`` [resamples, scenes], holds each value as often as the value's
+    scene, ``scenes`` [n]. Where ``q`` times the number of values is a whole number the quantile is
+    the mean of the two values beside it, so that 0.5 is the median.
     """
     order = np.argsort(values, kind="stable")
     ordered, columns = values[order], scenes[order]
     parts: list[Floats] = []
     for rows in _blocks(len(counts), len(values)):
-        # How many values of a resample lie up to and with each: whole numbers, and so exact.
+        # Number of a resample's values up to and with each: whole numbers, and so exact.
         reached = np.cumsum(counts[rows][:, columns], axis=1, dtype=np.float64)
         reached = reached[reached[:, -1] > 0.0]
         rank = q * reached[:, -1:]

@@ -1,4 +1,4 @@
-"""What a system is written with: its parts, its interface, the loop that runs them, adapters.
+"""Building blocks of a user's system: parts, interface, the loop that runs them, adapters.
 
 Each name loads what it needs when it is first used.
 """

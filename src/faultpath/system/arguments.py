@@ -1,4 +1,4 @@
-"""What a user hands to systems and plants, checked where it is handed over.
+"""Checks of the arguments of systems and plants.
 
 Each function raises `SystemMistake` with a sentence that says what is wrong and what to give.
 """
@@ -55,7 +55,7 @@ def variants_of(variants: Any) -> Mapping[str, Any]:
 
 
 def units_of(units: Any) -> Mapping[str, Any]:
-    """Return what is said of each source."""
+    """Return the units, or other fields, of each source."""
     for source, entry in _mapping("units", units, "such as {'speed': 'm/s'}").items():
         if not isinstance(entry, str | Mapping):
             raise SystemMistake(
@@ -66,20 +66,20 @@ def units_of(units: Any) -> Mapping[str, Any]:
 
 
 def channels_of(channels: Any) -> dict[str, tuple[str, ...]]:
-    """Return the sources of each channel that several may feed."""
+    """Return the sources of each channel with several of them."""
     example = "such as {'speed': ['wheels', 'filter']}"
-    found: dict[str, tuple[str, ...]] = {}
+    checked: dict[str, tuple[str, ...]] = {}
     for channel, sources in _mapping("channels", channels, example).items():
         if isinstance(sources, str) or not isinstance(sources, Sequence) or not sources:
             raise SystemMistake(
                 f"channels: '{channel}' is {shown(sources)}: give a list of its sources"
             )
-        found[channel] = tuple(cast("Sequence[str]", sources))
-    return found
+        checked[channel] = tuple(cast("Sequence[str]", sources))
+    return checked
 
 
 def check_episode(steps: Any, dt_s: Any, succeeded: Any, metrics: Any) -> None:
-    """Check the length of an episode and of a step, and what is asked of an episode."""
+    """Check the length of an episode and of a step, and the measures of an episode."""
     if not isinstance(steps, Integral) or steps < 1:
         raise SystemMistake(f"steps is {shown(steps)}: give a whole number of at least 1")
     if not isinstance(dt_s, Real) or not isfinite(dt_s) or dt_s <= 0:
@@ -101,5 +101,5 @@ def _mapping(name: str, value: Any, example: str) -> Mapping[str, Any]:
 
 
 def shown(value: Any) -> str:
-    """Return a wrong value in a line, without the place in memory that says nothing."""
+    """Return a wrong value in one line, without its address in memory."""
     return re.sub(" at 0x[0-9a-f]+", "", declared.shown(value))

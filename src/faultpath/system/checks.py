@@ -1,4 +1,4 @@
-"""Requirements of a user's system, checked first so that nothing fails halfway."""
+"""Checks of a user's system before a run, so that nothing fails halfway."""
 
 import re
 from collections.abc import Callable, Iterable, Mapping
@@ -7,7 +7,7 @@ from numbers import Integral, Real
 from os import PathLike
 from typing import Any, cast
 
-from faultpath.core.error_source import described, place
+from faultpath.core.error_source import described, location
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.interface import Interface
 from faultpath.loop.tap import wire
@@ -16,19 +16,19 @@ from faultpath.system.outcome import Metric, Outcome, Status
 from faultpath.system.system import System
 
 UNNAMED = ("held-out", "selection")
-"""Libraries that audits and checks run where none is named."""
+"""Libraries that audits and checks run by default."""
 
 _COLUMNS = frozenset(
     {"variant", "condition", "seed", "scene", "scene_index", "topology", "x_m", "y_m", "z_m"}
     | {f.name for f in fields(Outcome)}
 )
-"""Names that the table of outcomes has already."""
+"""Columns of the table of outcomes, which a metric cannot have as its name."""
 
 
 def library_of(system: System, name: str) -> Library:
-    """Return a library of a system; `SystemMistake` for what is none, `UserError` for no name.
+    """Return a library of a system; `SystemMistake` if it is none, `UserError` for an unknown name.
 
-    A system may have its one library under the names that stand for one where none is given.
+    A system may return its only library for each of the default names.
     """
     library: Any = system.library(name)
     if not isinstance(library, Library):
@@ -44,7 +44,7 @@ def library_of(system: System, name: str) -> Library:
 
 
 def paths_of(system: System, attribute: str) -> tuple[str | PathLike[str], ...]:
-    """Return paths that the system names; `SystemMistake` for what are none."""
+    """Return paths that the system names; `SystemMistake` if they are none."""
     paths = _declared(system, attribute, f"system {system.name!r}")
     if not isinstance(paths, (str, bytes, PathLike)) and isinstance(paths, Iterable):
         several = tuple(cast("Iterable[Any]", paths))
@@ -59,15 +59,15 @@ def _positive(number: Any) -> bool:
     return isinstance(number, Real) and 0 < float(number) < float("inf")
 
 
-def _mapping(holds: Callable[[Any, Any], bool], least: int = 0) -> Callable[[Any], bool]:
+def _mapping(is_valid: Callable[[Any, Any], bool], least: int = 0) -> Callable[[Any], bool]:
     return lambda mapping: (
         isinstance(mapping, Mapping)
         and len(cast("Any", mapping)) >= least
-        and all(holds(key, value) for key, value in cast("Mapping[Any, Any]", mapping).items())
+        and all(is_valid(key, value) for key, value in cast("Mapping[Any, Any]", mapping).items())
     )
 
 
-_PROMISED: Mapping[str, tuple[Callable[[Any], bool], str]] = {
+_REQUIRED: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     "control_dt_s": (_positive, "give the seconds of a control step"),
     "block_size": (
         lambda size: size is None or (isinstance(size, Integral) and int(size) >= 1),
@@ -97,20 +97,20 @@ _PROMISED: Mapping[str, tuple[Callable[[Any], bool], str]] = {
         "map the name of each Variant to it",
     ),
 }
-"""Attributes that an audit reads of every system: a condition each, and advice where it fails."""
+"""Attributes that an audit reads of every system, each with a condition and advice if it fails."""
 
 
 def check_system(system: System, name: str) -> None:
-    """Raise `SystemMistake` unless `system` declares what every audit asks of it.
+    """Raise `SystemMistake` unless `system` declares what every audit needs.
 
-    `name` is what the user calls it by.
+    `name` is the name by which the user called it.
     """
     label = f"system {name!r}"
     check_name(f"{label}: `name`", _declared(system, "name", label))
     values: dict[str, Any] = {}
-    for attribute, (holds, advice) in _PROMISED.items():
+    for attribute, (is_valid, advice) in _REQUIRED.items():
         values[attribute] = _declared(system, attribute, label)
-        if not holds(values[attribute]):
+        if not is_valid(values[attribute]):
             raise SystemMistake(f"{label}: `{attribute}` is {shown(values[attribute])}: {advice}")
     for metric in values["metrics"]:
         if metric in _COLUMNS:
@@ -133,13 +133,13 @@ def _declared(system: System, attribute: str, label: str) -> Any:
     try:
         value = getattr(system, attribute)
     except (Exception, SystemExit) as error:
-        # Without the attribute in its class there is no property that could fail.
+        # An AttributeError without such an attribute in the class is no failed property.
         if not isinstance(error, AttributeError) or hasattr(type(system), attribute):
             mistake = SystemMistake(f"{label}: `{attribute}` fails ({described(error)})")
-            mistake.place = place(error)
+            mistake.location = location(error)
             raise mistake from error
         value = None
-    may_be_none = attribute == "block_size"  # then the library decides
+    may_be_none = attribute == "block_size"  # then it follows from the size of the library
     if value is None and not may_be_none and getattr(System, attribute, attribute) is not None:
         raise SystemMistake(f"{label} declares no `{attribute}`: set it in the class")
     return value

@@ -1,4 +1,4 @@
-"""A system composed of a plant of episodes and modules; its interface follows from these."""
+"""A system composed of an episode plant and modules; its interface follows from these."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -27,13 +27,12 @@ SCENES: Mapping[str, Sequence[int]] = {
     "selection": range(500, 600),
     "held-out": range(1000, 1100),
 }
-"""The seeds of the libraries that a system has unless it says otherwise."""
+"""Default libraries of a system, and the seeds of their scenes."""
 
 
 @dataclass(frozen=True)
 class Parts:
-    """A variant: its modules, in any order, or a function of the treatment's seed that returns
-    them.
+    """A variant: its modules in any order, or a function that returns them for a seed.
 
     The function is for trained modules; it gets `None` where only ports and shapes are needed.
     """
@@ -49,30 +48,31 @@ class Parts:
 class ComposedSystem(LoopSystem):
     """A system of a plant and modules, whose interface follows from them.
 
-    Readers follow from the modules' ports, shapes from the first step of each variant.
-    What the plant senses is measured, what a scene's set-up returns is estimated (its channel has a
-    fidelity gap), what the plant reads is commanded, what a module writes is reconstructed.
+    Readers follow from the modules' ports, shapes from the first step of each variant. Sources that
+    the plant senses are measured, values that a scene's set-up returns are estimated (their
+    channels have a fidelity gap), the plant's input is commanded, modules' outputs are
+    reconstructed.
 
     Args:
         name: Name of the system.
-        plant: The part that senses and is moved.
+        plant: The controlled part.
         variants: The ways to wire it: `Parts`, or just their modules.
         units: Unit of each source, or the fields of a `faultpath.interface.Source` where there is
             more to say: unit, provenance, latency_s, rate_hz, uncertainty, correlation_group; and
-            components, what its numbers are called in charts.
-        channels: Those that several sources may feed, with these sources; every other source is a
-            channel of its own. In a variant the first that one of its modules writes feeds it, else
-            the first that the plant gives.
-        scenes: Seeds of the scenes of each library. A single one is what a command runs that names
-            none.
-        data_files: Files and folders whose contents decide a result; see `System.data_files`.
+            components, names of its numbers in charts.
+        channels: Channels with several possible sources, and these; every other source is a channel
+            of its own. A variant binds the first of them that one of its modules writes, else the
+            first that the plant senses.
+        scenes: Seeds of the scenes of each library. With a single library, commands run that one by
+            default.
+        data_files: Files and folders on whose contents a result depends; see `System.data_files`.
 
     Raises:
         SystemMistake: The parts do not fit together, or a source has no unit.
     """
 
     block_size = BLOCK
-    """Its plant moves a scene at a time: in larger blocks there is little to gain."""
+    """The plant moves one scene at a time, so larger blocks would gain little."""
 
     def __init__(
         self,
@@ -89,28 +89,30 @@ class ComposedSystem(LoopSystem):
         self._plant, self._scenes = plant, seeds_of(scenes)
         self._data_files = tuple(data_files)
         self.components = dict[str, tuple[str, ...]]()
-        units, several = units_of(units), channels_of(channels or {})
+        units, alternatives = units_of(units), channels_of(channels or {})
         self._parts, self._wirings = dict[str, Parts](), dict[str, Wiring]()
-        for variant, given in variants_of(variants).items():
-            modules = modules_of(variant, given.of(None) if isinstance(given, Parts) else given)
+        for variant, parts in variants_of(variants).items():
+            modules = modules_of(variant, parts.of(None) if isinstance(parts, Parts) else parts)
             listed = Parts(f"Modules: {', '.join(map(str, modules))}.", modules)
-            self._parts[variant] = given if isinstance(given, Parts) else listed
+            self._parts[variant] = parts if isinstance(parts, Parts) else listed
             written = [name for module in modules for name in module.writes]
             bindings = {
                 channel: next((n for n in (*written, *plant.senses) if n in sources), sources[0])
-                for channel, sources in several.items()
+                for channel, sources in alternatives.items()
             }
             self._wirings[variant] = Wiring(self._parts[variant].description, bindings)
-        self._interface = self._declared(units, several, plant.shapes)
-        seen = _Shapes()
+        self._interface = self._declared(units, alternatives, plant.shapes)
+        recorder = _ShapeRecorder()
         for variant in self._parts:
             wired = self.wirings[variant].bindings
             executable = graph(self._interface, plant, self.modules(variant, None), wired)
             batch = Batch((f"{SCENE}0",), 0, self.control_dt_s)
-            first = next(iter(Loop(self._interface, executable).execute(batch, cast("Any", seen))))
+            first = next(
+                iter(Loop(self._interface, executable).execute(batch, cast("Any", recorder)))
+            )
             for world in first.state.worlds:
                 world.close()
-        self._interface = self._declared(units, several, plant.shapes | seen.shapes)
+        self._interface = self._declared(units, alternatives, plant.shapes | recorder.shapes)
 
     @property
     @override
@@ -157,7 +159,7 @@ class ComposedSystem(LoopSystem):
     def _declared(
         self,
         units: Mapping[str, str | Mapping[str, Any]],
-        several: Mapping[str, Sequence[str]],
+        alternatives: Mapping[str, Sequence[str]],
         shapes: Mapping[str, tuple[int, ...]],
     ) -> Interface:
         """Return the interface; a source of unknown shape counts as a number."""
@@ -166,14 +168,14 @@ class ComposedSystem(LoopSystem):
         read = dict.fromkeys(
             port.channel for part in (*modules, plant) for port in sorted(part.ports)
         )
-        feeds = {channel: several.get(channel, (channel,)) for channel in read}
-        # Until a first step shows what a module writes, it has the shape of what it stands in for.
+        feeds = {channel: alternatives.get(channel, (channel,)) for channel in read}
+        # Until a first step shows a module's output, it has the shape of the source it replaces.
         for fed in feeds.values():
             if shaped := [name for name in fed if name in shapes]:
                 shapes = dict.fromkeys(fed, shapes[shaped[0]]) | dict(shapes)
         written = [name for module in modules for name in module.writes]
         known = dict.fromkeys(plant.senses, "measured") | dict.fromkeys(plant.facts, "estimated")
-        known |= dict.fromkeys(several.get(plant.action, (plant.action,)), "commanded")
+        known |= dict.fromkeys(alternatives.get(plant.action, (plant.action,)), "commanded")
         for module in modules:
             for port in sorted(module.ports):
                 if not {*feeds[port.channel]} & {*plant.senses, *plant.facts, *written}:
@@ -182,7 +184,7 @@ class ComposedSystem(LoopSystem):
                     mistake = SystemMistake(
                         f"system '{self.name}': module '{module.name}': {wrong}"
                     )
-                    mistake.place = module.place if isinstance(module, FunctionModule) else ""
+                    mistake.location = module.location if isinstance(module, FunctionModule) else ""
                     raise mistake
         if plant.action in feeds and not {*feeds[plant.action]} & {*written}:
             raise SystemMistake(
@@ -215,7 +217,7 @@ class ComposedSystem(LoopSystem):
             raise SystemMistake(f"system '{self.name}': {error}") from None
 
     def _check_units(self, units: Mapping[str, Any], sources: Sequence[str]) -> None:
-        """Refuse sources without a unit, after a look at whether it stands under another name."""
+        """Refuse a source without a unit; if its name seems misspelt in `units`, say so."""
         spare = [name for name in units if name not in sources]
         for source in sources:
             if source in units:
@@ -236,7 +238,7 @@ class ComposedSystem(LoopSystem):
         units: Mapping[str, str | Mapping[str, Any]],
         shape: tuple[int, ...] | None,
     ) -> dict[str, Any]:
-        """Return what `units` says of a source, and note what its numbers are called."""
+        """Return the fields of a source in `units`, and note the names of its numbers."""
         label = f"system '{self.name}': source '{source}'"
         entry = units[source]
         facts = {"unit": entry} if isinstance(entry, str) else dict(entry)
@@ -250,8 +252,8 @@ class ComposedSystem(LoopSystem):
         return facts
 
 
-class _Shapes:
-    """Takes the place of the taps during a first step, and notes the shapes that pass."""
+class _ShapeRecorder:
+    """Stands in for the taps during a first step, and records the shapes of readings."""
 
     def __init__(self) -> None:
         self.shapes: dict[str, tuple[int, ...]] = {}

@@ -1,4 +1,4 @@
-"""Declarations of a system: variants, libraries of scenes, floor plans; checked when made."""
+"""Declarations of a system, checked when made: variants, libraries of scenes, floor plans."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -14,7 +14,7 @@ _LARGEST_INDEX = 2**63 - 1
 
 
 def check_name(what: str, name: Any) -> None:
-    """Raise `SystemMistake` for what cannot be a name in tables, files and on the terminal."""
+    """Raise `SystemMistake` for a name that does not suit tables, files and the terminal."""
     if not isinstance(name, str):
         raise SystemMistake(f"{what} is {shown(name)}: it must be text")
     if not name:
@@ -34,11 +34,11 @@ class Variant:
     name: str
     description: str
     readers: frozenset[str]
-    """The taps that this variant reads; a fault cannot reach any other."""
+    """Readers of this variant; a fault cannot reach any other."""
     bindings: Mapping[str, str] = field(default_factory=dict[str, str])
     """Channel to source, where it is not the channel's first source."""
     privileged: frozenset[str] = frozenset()
-    """Privileged sources that this variant may read, because it says so here."""
+    """Privileged sources that this variant may read."""
 
     def __post_init__(self) -> None:
         """Raise `SystemMistake` for parts of another type."""
@@ -54,20 +54,20 @@ class Variant:
 
 @dataclass(frozen=True)
 class SceneRef:
-    """A scene as the core knows it: its name, its place in the library and its kind."""
+    """A scene as the engine knows it: its name, its index in the library and its kind."""
 
     id: str
     index: int
     topology: str = ""
 
     def __post_init__(self) -> None:
-        """Raise `SystemMistake` for what no table could hold."""
+        """Raise `SystemMistake` for values that no table could hold."""
         check_name("the id of a scene", self.id)
         index: Any = self.index
         if not isinstance(index, Integral) or not 0 <= int(index) <= _LARGEST_INDEX:
             raise SystemMistake(
-                f"scene '{self.id}' has the index {shown(index)}: it is its place in the library, "
-                "a whole number from 0 to 2^63 - 1"
+                f"scene '{self.id}' has the index {shown(index)}: give its position in the "
+                "library, a whole number from 0 to 2^63 - 1"
             )
         if self.topology != "":
             check_name(f"the topology of scene '{self.id}'", self.topology)
@@ -82,19 +82,19 @@ class Library:
     content_hash: str
 
     def __post_init__(self) -> None:
-        """Raise `SystemMistake` for scenes that are none, or that share a name."""
+        """Raise `SystemMistake` for scenes of another type, or that share a name or an index."""
         check_name("the name of a library", self.name)
         label = f"library '{self.name}'"
         check_name(f"the content hash of {label}", self.content_hash)
         seen: set[str] = set()
-        places: dict[int, str] = {}
+        ids: dict[int, str] = {}
         for scene in _items(f"{label}: scenes", self.scenes):
             if not isinstance(scene, SceneRef):
                 raise SystemMistake(f"{label} holds {shown(scene)}: every scene is a SceneRef")
             if scene.id in seen:
                 raise SystemMistake(f"{label} holds scene '{scene.id}' twice: name each scene once")
             seen.add(scene.id)
-            if (other := places.setdefault(scene.index, scene.id)) != scene.id:
+            if (other := ids.setdefault(scene.index, scene.id)) != scene.id:
                 raise SystemMistake(
                     f"{label} gives scenes '{other}' and '{scene.id}' the index {scene.index}: "
                     "number its scenes 0, 1, 2, ..."
@@ -108,7 +108,7 @@ def _items(what: str, members: Any) -> Iterable[Any]:
 
 
 def shown(value: Any) -> str:
-    """Return a wrong value in a line that is short enough for a message."""
+    """Return a wrong value in one line, short enough for a message."""
     text = one_line(represented(value))
     return text if len(text) <= 80 else f"{text[:80]}…"
 

@@ -1,4 +1,4 @@
-"""A plant of episodes: each scene runs until it ends, and stays as it ended."""
+"""A plant whose scenes are episodes: each runs until it ends, and then keeps its final state."""
 
 from abc import abstractmethod
 from collections.abc import Callable, Mapping, Sequence
@@ -17,15 +17,15 @@ from faultpath.system.observed import Look, look
 from faultpath.system.outcome import Metric
 
 SCENE = "seed/"
-"""A scene is called after the seed of its reset, `seed/7`."""
+"""Prefix of a scene's name, which holds the seed of its reset: `seed/7`."""
 
 
 @dataclass(frozen=True)
 class Episode:
-    """One finished trial, as rules on success see it.
+    """One finished trial, as `succeeded` and metrics get it.
 
-    `episode["angle"]` is what the source `angle` held: at the start and after each step,
-    `[T + 1, ...]`. Of a source with more than one axis, such as an image, only the last is kept,
+    `episode["angle"]` are the values of the source `angle` at the start and after each step,
+    `[T + 1, ...]`. A source with more than one axis, such as an image, keeps only its last value,
     `[1, ...]`.
     """
 
@@ -33,96 +33,97 @@ class Episode:
     rewards: HostArray
     """`[T]`; zeros where there are none."""
     terminated: bool
-    """Whether the environment ended it, for good or bad; else its time was up."""
+    """Whether the environment ended it, successfully or not; else it reached the time limit."""
     info: Mapping[str, Any]
-    """Info that the environment returned at its last step."""
+    """Info that the environment returned at the last step."""
     dt_s: float
 
     def __getitem__(self, source: str) -> HostArray:
-        """Return what a source held; `SystemMistake` for an unknown one."""
+        """Return the values of a source; `SystemMistake` for an unknown one."""
         if source not in self.signals:
             raise SystemMistake(f"an episode: {unknown('source', source, self.signals)}")
         return self.signals[source]
 
     @property
     def returned(self) -> float:
-        """The sum of its rewards."""
+        """Sum of the rewards."""
         return float(self.rewards.sum())
 
 
 @dataclass(frozen=True)
 class SceneInstance:
-    """One scene at its start; made for one trial and thrown away with it."""
+    """One scene at its start, made for one trial."""
 
     observation: Any
-    """An array, or a mapping or tuple of such."""
+    """An array, or a mapping or tuple of arrays."""
     facts: Mapping[str, Any]
     """Values that its set-up returned, by source."""
     initial: str
-    """A hash of its initial state."""
+    """Hash of its initial state."""
     disturbance: str
-    """A hash of what its set-up did."""
+    """Hash of the disturbances that its set-up made."""
     step: Callable[[HostArray, int], tuple[Any, float, bool, bool, Mapping[str, Any]]]
-    """Moves it by an action at a step; returns observation, reward, terminated, truncated, info."""
-    seen: Callable[[], Any]
-    """Returns what `trace` and `render` look at: the environment, or the state."""
+    """Takes an action and the step; returns observation, reward, terminated, truncated, info."""
+    view: Callable[[], Any]
+    """Returns the argument of `trace` and `render`: the environment, or the state."""
     close: Callable[[], None] = lambda: None
-    """Frees what it holds."""
+    """Frees its resources."""
 
 
 @dataclass(frozen=True)
 class Measure:
-    """A metric of a system of episodes, and how it is taken from one."""
+    """A metric, and the function that computes it from an episode."""
 
     metric: Metric
     of: Callable[[Episode], float]
 
 
 Show = Callable[[Any], Any]
-"""Returns numbers, in metres, that show a scene."""
+"""Returns numbers, in metres, that picture a scene."""
 
 
 @dataclass
 class _Batch:
-    """A batch under way."""
+    """State of a batch."""
 
     worlds: Sequence[SceneInstance]
-    seen: list[Any]
-    """The last observation of each world."""
+    observations: list[Any]
+    """Latest observation of each world."""
     sensed: dict[str, HostArray]
     running: HostArray
     succeeded: HostArray
     crashed: HostArray
     steps: HostArray
-    """Steps that each scene has made."""
+    """Steps made by each scene."""
     metrics: dict[str, HostArray]
     log: dict[str, list[HostArray]]
     rewards: list[HostArray]
-    at: HostArray | None
-    """Position of each, `[B, 3]`, metres."""
+    positions: HostArray | None
+    """Position of each scene's vehicle, `[B, 3]`, m."""
 
 
 class EpisodePlant(Plant):
-    """A plant whose scenes end by themselves, each in its own time.
+    """A plant whose scenes end independently of each other.
 
-    A scene that has ended is frozen: it is not moved any more, and what it senses stays what it
-    was at its end. It counts as a success where `succeeded` says so of its episode; else as a crash
-    where the environment ended it, and as a timeout where its time was up.
+    A scene that has ended is frozen: it moves no further and its sources keep their final values.
+    It is a success if `succeeded` returns true for its episode; else a crash if the environment
+    ended it, and a timeout if it reached the time limit.
 
-    `trace` says where a scene's vehicle is, `(x, y)` or `(x, y, z)` in metres, and `render` draws
-    the scene as a line through points `(x, y)`: that is what the report's player moves. Both look
-    at the environment, or at the state where the plant is made of functions.
+    `trace` returns the position of a scene's vehicle, `(x, y)` or `(x, y, z)` in metres, and
+    `render` draws the scene as a line through points `(x, y)`, which the report's player animates.
+    Both get the environment, or the state where the plant is made of functions.
 
     Raises `SystemMistake` for a source that the observation does not hold.
     """
 
     name = "plant"
     observed: str = "the observation"
-    """Name in messages of where `observes` looks."""
+    """Name in messages of the object that `observes` takes sources from."""
     identity: str = ""
-    """Facts that decide a trial and stand in no file that the system imports."""
+    """Facts on which trials depend and that are in no file the system imports."""
     code: Sequence[str] = ()
-    """Classes, as `module:name`, whose code decides a trial and is not imported."""
+    """Classes, as `module:name`, on whose code trials depend although the system imports none of
+    it."""
 
     def __init__(
         self,
@@ -142,12 +143,12 @@ class EpisodePlant(Plant):
         self.reads = frozenset({Port(action, "actuator")})
         self.action = action
         self._observes, self._succeeded = dict(observes), succeeded
-        probed = self.world(f"{SCENE}0", 0)
-        self.facts = tuple(probed.facts)
+        sample = self.world(f"{SCENE}0", 0)
+        self.facts = tuple(sample.facts)
         self.senses = (*self._observes, *self.facts)
-        sensed = self._sensed([probed], [probed.observation])
+        sensed = self._sensed([sample], [sample.observation])
         self.shapes = {name: np.shape(value)[1:] for name, value in sensed.items()}
-        probed.close()
+        sample.close()
 
     @abstractmethod
     def world(self, scene: str, seed: int) -> SceneInstance:
@@ -156,7 +157,7 @@ class EpisodePlant(Plant):
     def _sensed(
         self, worlds: Sequence[SceneInstance], observations: Sequence[Any]
     ) -> dict[str, HostArray]:
-        """Return every source, `[B, ...]`, of worlds with these observations."""
+        """Return the values of all sources, `[B, ...]`, for these observations."""
         sources = look(self._observes, observations, self.observed)
         for name in self.facts:
             sources[name] = np.array([np.asarray(world.facts[name]) for world in worlds])
@@ -165,11 +166,11 @@ class EpisodePlant(Plant):
     @override
     def start(self, batch: Batch) -> _Batch:
         worlds, n = [self.world(name, batch.seed) for name in batch.scenes], len(batch.scenes)
-        seen = [world.observation for world in worlds]
-        sensed = self._sensed(worlds, seen)
+        observations = [world.observation for world in worlds]
+        sensed = self._sensed(worlds, observations)
         return _Batch(
             worlds=worlds,
-            seen=seen,
+            observations=observations,
             sensed=sensed,
             running=np.ones(n, bool),
             succeeded=np.zeros(n, bool),
@@ -178,33 +179,33 @@ class EpisodePlant(Plant):
             metrics={name: np.full(n, np.nan) for name in self.metrics},
             log={name: [value] for name, value in sensed.items()},
             rewards=[],
-            at=self._places(worlds),
+            positions=self._positions(worlds),
         )
 
-    def _places(self, worlds: Sequence[SceneInstance]) -> HostArray | None:
-        """Return where each world is, `[B, 3]`."""
+    def _positions(self, worlds: Sequence[SceneInstance]) -> HostArray | None:
+        """Return the position of each scene's vehicle, `[B, 3]`, m."""
         if self._trace is None:
             return None
-        places = np.zeros((len(worlds), 3))
-        for row, world in zip(places, worlds, strict=True):
-            at = np.ravel(self._trace(world.seen()))
-            if not 0 < len(at) < 4:
+        positions = np.zeros((len(worlds), 3))
+        for row, world in zip(positions, worlds, strict=True):
+            position = np.ravel(self._trace(world.view()))
+            if not 0 < len(position) < 4:
                 raise SystemMistake(
-                    f"`trace` returned {len(at)} numbers: give x, y and z in metres"
+                    f"`trace` returned {len(position)} numbers: give x, y and z in metres"
                 )
-            row[: len(at)] = at
-        return places
+            row[: len(position)] = position
+        return positions
 
     @override
     def position(self, state: _Batch) -> HostArray | None:
-        return state.at
+        return state.positions
 
     def drawn(self, state: _Batch) -> HostArray | None:
-        """Return each scene as a line through points, `[B, P, 2]`, metres, not a number where the
-        pen is lifted; `None`: there is no such picture."""
+        """Return each scene as a line through points, `[B, P, 2]`, m, with NaN at gaps; `None`: the
+        plant has no `render`."""
         if self._render is None:
             return None
-        lines = [np.asarray(self._render(world.seen()), float) for world in state.worlds]
+        lines = [np.asarray(self._render(world.view()), float) for world in state.worlds]
         if any(line.ndim != 2 or line.shape != (len(lines[0]), 2) for line in lines):
             raise SystemMistake(
                 "`render` must return points (x, y) in metres, as many at each step; it returned "
@@ -218,18 +219,18 @@ class EpisodePlant(Plant):
 
     @override
     def advance(self, state: _Batch, inputs: Inputs) -> _Batch:
-        """Move what runs, freeze what does not, and judge what ends."""
+        """Move running scenes, and evaluate the episodes that end."""
         running = state.running
         action = to_numpy(inputs[Port(self.action, "actuator")])
         rewards, ends = np.zeros(len(running)), np.zeros((2, len(running)), bool)
         info: list[Mapping[str, Any]] = [{} for _ in running]
         for i in map(int, np.flatnonzero(running)):
             result = state.worlds[i].step(action[i], inputs.step)
-            state.seen[i], rewards[i], ends[0, i], ends[1, i], info[i] = result
-        fresh = self._sensed(state.worlds, state.seen)
+            state.observations[i], rewards[i], ends[0, i], ends[1, i], info[i] = result
+        sensed = self._sensed(state.worlds, state.observations)
         before, state.sensed, all_run = state.sensed, {}, running.all()
         for name, old in before.items():
-            value = fresh[name]
+            value = sensed[name]
             if not all_run:
                 value = np.where(running.reshape(-1, *[1] * (value.ndim - 1)), value, old)
             if value.ndim > 2:
@@ -240,7 +241,7 @@ class EpisodePlant(Plant):
         state.steps = state.steps + running
         terminated, truncated = ends
         ended = running & (terminated | truncated | (state.steps == self.steps))
-        state.at = self._places(state.worlds)
+        state.positions = self._positions(state.worlds)
         if ended.any():
             self._end(state, ended, terminated, info)
         return state
@@ -252,12 +253,12 @@ class EpisodePlant(Plant):
         terminated: HostArray,
         info: Sequence[Mapping[str, Any]],
     ) -> None:
-        """Judge the episodes that ended at a step."""
+        """Evaluate the episodes that ended at a step."""
         succeeded, crashed = state.succeeded.copy(), state.crashed.copy()
         for i in map(int, np.flatnonzero(ended)):
             signals = {name: np.stack([rows[i] for rows in log]) for name, log in state.log.items()}
-            paid = np.array([row[i] for row in state.rewards])
-            episode = Episode(signals, paid, bool(terminated[i]), info[i], self.dt_s)
+            rewards = np.array([row[i] for row in state.rewards])
+            episode = Episode(signals, rewards, bool(terminated[i]), info[i], self.dt_s)
             success: Any = self._succeeded(episode)
             if type(success) not in (bool, np.bool_):
                 raise SystemMistake(

@@ -18,19 +18,18 @@ class FunctionPlant(EpisodePlant):
 
     Args:
         start: `start(rng)` returns the state at the start of a scene: an array, or numbers and
-            arrays by name. Whatever makes one scene another is drawn from `rng`.
-        step: `step(state, action, rng)` returns the state one control step later. It
-            draws other numbers at each step and seed, and the same for every
-            variant and condition.
+            arrays by name. Everything in which scenes differ is drawn from `rng`.
+        step: `step(state, action, rng)` returns the state one control step later. `rng` gives other
+            numbers at each step and seed, and the same for every variant and condition.
         observes: Source to its part of the state: a name, an index, a slice, several of them in
             turn, or a function of the batch's state.
         action: Channel from which the plant is moved, at the place `actuator`.
         steps: Control steps of an episode.
         dt_s: Length of a control step, s.
-        succeeded: Says of each finished episode whether it was a success.
+        succeeded: Returns whether a finished episode was a success.
         metrics: Further measures of each finished episode, by name.
-        over: `over(state)` says whether the scene ends before its time; without it none does.
-        trace: `trace(state)` returns where it is, `(x, y)` or `(x, y, z)` in metres.
+        over: `over(state)` returns whether the scene ends early; without it none does.
+        trace: `trace(state)` returns the position, `(x, y)` or `(x, y, z)` in metres.
         render: `render(state)` returns points `(x, y)` of a line that draws it, in metres.
     """
 
@@ -65,19 +64,20 @@ class FunctionPlant(EpisodePlant):
 
     @override
     def world(self, scene: str, seed: int) -> SceneInstance:
-        state = _given("start", self._start(generator("plant/start", scene, 0)))
+        state = _required("start", self._start(generator("plant/start", scene, 0)))
 
         def step(action: HostArray, step: int) -> tuple[Any, float, bool, bool, dict[str, Any]]:
             nonlocal state
             draws = generator("plant/step", scene, seed, step)
-            state = _given("step", self._step(state, action, draws))
+            state = _required("step", self._step(state, action, draws))
             return state, 0.0, self._over is not None and self._over(state), False, {}
 
-        # What a step draws is addressed by scene and seed, so these are all that decides it.
+        # A step's random numbers are addressed by scene and seed, so these identify the
+        # disturbance.
         return SceneInstance(state, {}, hashed(state), hashed(scene, seed), step, lambda: state)
 
 
-def _given(name: str, state: Any) -> Any:
+def _required(name: str, state: Any) -> Any:
     if state is None:
         raise SystemMistake(f"`{name}` returned nothing: it must return the state")
     return state

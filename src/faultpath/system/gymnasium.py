@@ -1,6 +1,7 @@
-"""Gymnasium's environments as the plant of a system (extra `gymnasium`, version 1.0 or newer).
+"""Gymnasium environments as the plant of a system (extra `gymnasium`, version 1.0 or newer).
 
-It is made anew for every scene, by id or by a function, and moved only while its episode lasts.
+Every scene gets a new environment, by id or from a function, which moves only while its episode
+lasts.
 """
 
 import re
@@ -32,8 +33,8 @@ from faultpath.system.outcome import Metric
 Setup = Callable[[Any, np.random.Generator], Mapping[str, Any] | None]
 OnStep = Callable[[Any, np.random.Generator, int], None]
 
-_PLACE = re.compile(r"(?<=faultpath_system_)\w*(?=:)| at 0x[0-9a-f]+")
-"""A system's module, which is named after the place of its file, and a function's place in memory:
+_LOCATION = re.compile(r"(?<=faultpath_system_)\w*(?=:)| at 0x[0-9a-f]+")
+"""A system's module, which is named after the path of its file, and a function's address in memory:
 both differ from machine to machine."""
 
 
@@ -46,17 +47,16 @@ class GymnasiumPlant(EpisodePlant):
             in turn, or a function of the batch's observation.
         action: Channel from which the environment is moved, at the place `actuator`; a reading has
             the action's shape, or is a number where the action is one.
-        succeeded: Says of each finished episode whether it was a success.
+        succeeded: Returns whether a finished episode was a success.
         metrics: Further measures of each finished episode, by name, beside its `return`.
         steps: Control steps of an episode; default the time limit of the environment.
         dt_s: Length of a control step, s; default the `dt` of the environment.
         setup: Called as `setup(env, rng)` for each scene, after its seeded reset, to set model
             parameters and disturbances. The values that it returns by name are sources too, and
             are hashed: two trials whose scenes were set up differently are no pair.
-        on_step: Called as `on_step(env, rng, step)` before each step, to disturb the scene. It
-            draws other numbers at each step and seed, and the same for every
-            variant and condition.
-        trace: `trace(env)` returns where it is, `(x, y)` or `(x, y, z)` in metres, for the report.
+        on_step: Called as `on_step(env, rng, step)` before each step, to disturb the scene. `rng`
+            gives other numbers at each step and seed, and the same for every variant and condition.
+        trace: `trace(env)` returns the position, `(x, y)` or `(x, y, z)` in metres, for the report.
         render: `render(env)` returns points `(x, y)` of a line that draws it, in metres.
     """
 
@@ -110,7 +110,7 @@ class GymnasiumPlant(EpisodePlant):
             rng = generator("environment/setup", scene, 0)
             facts = self._setup(env, rng) or {}
             disturbance = hashed((sorted(facts.items()), rng.bit_generator.state))
-        if self._on_step:  # its draws are addressed by scene and seed, which so decide it
+        if self._on_step:  # its random numbers are addressed by scene and seed
             disturbance = hashed(disturbance, scene, seed)
 
         def step(action: HostArray, step: int) -> tuple[Any, float, bool, bool, Mapping[str, Any]]:
@@ -145,27 +145,27 @@ class GymnasiumPlant(EpisodePlant):
 
 
 def _identity(env: Any) -> str:
-    """Return how an environment is made, and the packages that its class computes with."""
-    places = [sys.modules.get(kind.__module__) for kind in type(env.unwrapped).__mro__]
-    values = [value for place in places if place for value in vars(place).values()]
+    """Return the spec of an environment, and the packages that its classes use."""
+    modules = [sys.modules.get(kind.__module__) for kind in type(env.unwrapped).__mro__]
+    values = [value for module in modules if module for value in vars(module).values()]
     used = {value.__name__.partition(".")[0] for value in values if isinstance(value, ModuleType)}
     versions = {name: version for name in sorted(used) if (version := release(name))}
-    return f"{_PLACE.sub('', str(env.spec))} {versions}"
+    return f"{_LOCATION.sub('', str(env.spec))} {versions}"
 
 
 def _code(env: Any) -> tuple[str, ...]:
     """Return the classes of an environment and its wrappers that are not Gymnasium's own.
 
-    Nobody imports an environment that is registered under an id, but its code decides trials all
-    the same. The file of a system is counted elsewhere.
+    An environment that is registered under an id need not be imported by the system, and yet its
+    code decides trials. The system's own file is counted elsewhere.
     """
     parts: list[Any] = [env]
     while hasattr(parts[-1], "env"):
         parts.append(parts[-1].env)
     names: dict[str, None] = {}
     for part in parts:
-        place = part.__class__.__module__
-        ours = place.partition(".")[0] == "gymnasium" or place.startswith("faultpath_system_")
-        if not ours and getattr(sys.modules.get(place), "__spec__", None) is not None:
-            names[f"{place}:{part.__class__.__name__}"] = None
+        module = part.__class__.__module__
+        known = module.partition(".")[0] == "gymnasium" or module.startswith("faultpath_system_")
+        if not known and getattr(sys.modules.get(module), "__spec__", None) is not None:
+            names[f"{module}:{part.__class__.__name__}"] = None
     return tuple(names)

@@ -14,7 +14,7 @@ TEMPLATES = {
     "torch": ("calibrated", "gain"),
     "gymnasium": ("known", "mass"),
 }
-"""By what the system is written with: its baseline, and the channel that its audit faults."""
+"""By library that the system is written with: its baseline, and the channel to fault."""
 
 
 def write_system(name: str, kind: str, folder: Path) -> tuple[Path, Path]:
@@ -30,8 +30,8 @@ def write_system(name: str, kind: str, folder: Path) -> tuple[Path, Path]:
             "as my_rover."
         )
     spec = None if iskeyword(name) else find_spec(name)
-    places = [] if spec is None else [*(spec.submodule_search_locations or ()), spec.origin]
-    here = all(Path(place).resolve().is_relative_to(folder.resolve()) for place in places if place)
+    paths = [] if spec is None else [*(spec.submodule_search_locations or ()), spec.origin]
+    local = all(Path(path).resolve().is_relative_to(folder.resolve()) for path in paths if path)
     taken = ""
     if iskeyword(name):
         taken = "a word of Python"
@@ -39,7 +39,7 @@ def write_system(name: str, kind: str, folder: Path) -> tuple[Path, Path]:
         taken = "a file of Python's or pytest's own"
     elif name in sys.stdlib_module_names:
         taken = "a module of Python's own"
-    elif places and ("site-packages" in str(places) or not here):
+    elif paths and ("site-packages" in str(paths) or not local):
         taken = "an installed package"
     if taken:
         raise UserError(
@@ -52,15 +52,15 @@ def write_system(name: str, kind: str, folder: Path) -> tuple[Path, Path]:
     system = (texts / f"{kind}.py.txt").read_text("utf-8").replace("NAME", name)
     test = (texts / "test.py.txt").read_text("utf-8").replace("NAME", name)
     test = test.replace("BASELINE", f'"{baseline}"').replace("PARAMETER", parameter)
-    places = folder / f"{name}.py", folder / f"test_{name}.py"
-    for place in places:
-        if place.exists():
-            raise UserError(f"{place} is there already: choose another name, or move it away.")
+    files_to_write = folder / f"{name}.py", folder / f"test_{name}.py"
+    for path in files_to_write:
+        if path.exists():
+            raise UserError(f"{path} is there already: choose another name, or move it away.")
     try:
-        for place, text in zip(places, (system, test), strict=True):
-            write_text(place, text)
+        for path, text in zip(files_to_write, (system, test), strict=True):
+            write_text(path, text)
     except BaseException:
-        for place in places:
-            place.unlink(missing_ok=True)
+        for path in files_to_write:
+            path.unlink(missing_ok=True)
         raise
-    return places
+    return files_to_write

@@ -1,4 +1,4 @@
-"""A system that is nothing but its parts: a plant and modules, executed by the one loop."""
+"""A system made of a plant and modules, which the one loop executes."""
 
 import math
 from abc import abstractmethod
@@ -16,12 +16,12 @@ from faultpath.system.outcome import Outcome, Status, control_steps
 from faultpath.system.system import BLOCK, System, Variant
 
 BLOCKS, LARGEST_BLOCK = 64, 500
-"""Blocks of a large library, enough for many workers, and scenes of a block."""
+"""Number of blocks of a large library, enough for many workers, and scenes of one block."""
 
 
 @dataclass(frozen=True)
 class Wiring:
-    """Description and bindings of a variant, beside its modules."""
+    """Description and bindings of a variant; all else follows from its modules."""
 
     description: str
     bindings: Mapping[str, str] = field(default_factory=dict[str, str])
@@ -31,8 +31,8 @@ class Wiring:
 class LoopSystem(System):
     """A system built from a plant and modules.
 
-    Readers and privileged sources of its variants follow from the modules' ports, and `run` is
-    the loop. Its author writes the parts, and says which of them each variant has.
+    Readers and privileged sources of its variants follow from the modules' ports, and `run` is the
+    loop. Its author writes the parts and chooses those of each variant.
     """
 
     block_size = None
@@ -44,19 +44,19 @@ class LoopSystem(System):
 
     @abstractmethod
     def plant(self) -> Plant:
-        """Return what senses and is moved."""
+        """Return the plant."""
 
     @abstractmethod
     def modules(self, variant: str, seed: int | None) -> Sequence[Module]:
         """Return the modules of a variant, in any order.
 
         `seed` is that of the treatment, for trained modules that of their training; with `None`
-        only their ports will be looked at, so that weights may be blank.
+        only their ports are used, so weights may be blank.
         """
 
     @property
     def variants(self) -> Mapping[str, Variant]:
-        """The wirings, with what their modules read."""
+        """The wirings, with their modules' readers and privileged sources."""
         return self._variants
 
     @cached_property
@@ -88,11 +88,10 @@ class LoopSystem(System):
 
     @override
     def scenes_a_block(self, scenes: int) -> int:
-        """Return the size of the blocks of a library with so many scenes.
+        """Return the size of the blocks of a library of `scenes` scenes.
 
-        A step of arrays costs hardly more for many scenes than for a few, so a large library has so
-        many blocks and no more, up to a size that bounds what a block keeps in memory and what is
-        lost where one ends early.
+        A step of arrays costs hardly more for many scenes than for a few, so a large library has a
+        fixed number of blocks, up to a size that limits a block's memory and the work lost with it.
         """
         return self.block_size or min(max(BLOCK, math.ceil(scenes / BLOCKS)), LARGEST_BLOCK)
 
@@ -103,26 +102,27 @@ class LoopSystem(System):
     def execute(
         self, loop: Loop, scenes: Sequence[str], taps: Deliverer, seed: int
     ) -> list[Outcome]:
-        """Execute a variant's `loop`, or one made from it that is recorded.
+        """Execute a variant's `loop`, or a recorded one made from it.
 
-        A system whose loops run in a context of their own, such as torch's inference mode,
-        overrides this.
+        Override it for a context of its own, such as torch's inference mode.
         """
         plant, batch = loop.graph.plant, Batch(tuple(scenes), seed, self.control_dt_s)
-        path: list[Array] = []
+        positions: list[Array] = []
         state = None
         for instant in loop.execute(batch, taps):
             state = instant.state
-            path.append(plant.position(state))
-        drawn = [h for part in loop.graph.modules if (h := part.noise_hashes(batch)) is not None]
-        noise = ["-".join(hashes) for hashes in zip(*drawn, strict=True)] or ["none"] * len(scenes)
-        # Reading the end of the trials waits for the plant's device, once a batch.
+            positions.append(plant.position(state))
+        noise_hashes = [module.noise_hashes(batch) for module in loop.graph.modules]
+        by_module = [hashes for hashes in noise_hashes if hashes is not None]
+        noise = ["-".join(hashes) for hashes in zip(*by_module, strict=True)]
+        noise = noise or ["none"] * len(scenes)
+        # This waits for the plant's device, once a batch.
         end = plant.progress(state)
         initial, disturbed = plant.conditions(state)
         succeeded, crashed, times = map(to_numpy, (end.succeeded, end.crashed, end.time_s))
         metrics = {name: to_numpy(values) for name, values in end.metrics.items()}
-        traced = path[0] is not None
-        traces = to_numpy(namespace(path[0]).stack(path)) if traced else None
+        traced = positions[0] is not None
+        traces = to_numpy(namespace(positions[0]).stack(positions)) if traced else None
         outcomes: list[Outcome] = []
         for i, scene in enumerate(batch.scenes):
             time_s = float(times[i])

@@ -1,4 +1,4 @@
-"""Functions as modules: what one is called with is what it reads."""
+"""Functions as modules, which read their arguments."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
@@ -9,14 +9,14 @@ import numpy as np
 from typing_extensions import override
 
 from faultpath.core.arrays import is_array, namespace
-from faultpath.core.error_source import described, ours, place
+from faultpath.core.error_source import described, location, ours
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import near, unknown
 from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
 from faultpath.system.tapping import Made
 
 MEMORY = "memory"
-"""Name of the argument that is no channel."""
+"""Name of the argument that is not a channel."""
 
 
 def writes(
@@ -29,38 +29,37 @@ def writes(
 ) -> Callable[[Callable[..., Any]], "FunctionModule"]:
     """Make a function a module that writes `source`: `@writes("push")` above its `def`.
 
-    Each argument is a channel, read at a place of the same name, and is handed one row a scene,
-    `[B, ...]`; what the function returns is what `source` holds. One that has an argument `memory`,
-    `None` at the first step, returns `(value, memory)`.
+    Each argument is a channel, read at a place of the same name, with one row a scene, `[B, ...]`.
+    The function returns the value of `source`. With an argument `memory`, which is `None` at the
+    first step, it returns `(value, memory)`.
 
-    With `of` the module is made of objects that keep their own state, a set for each scene. The
-    function is called a scene at a time, with the scene's objects first and rows without the batch
-    axis, and only while the scene runs. Where these objects are `faultpath.system.tapping`, what
-    is read there are ports too.
+    With `of` the module has objects that keep their own state, a set for each scene. The function
+    is then called one scene at a time, while the scene runs: with the scene's objects first, and
+    rows without the batch axis. Attributes of these objects that are `tapped` are ports too.
 
-    Objects are made at a scene's first step. What the function that makes them cannot be called
-    without are arguments like the others: channels, of which it gets the first reading.
+    Objects are made at a scene's first step. Required arguments of the function that makes them are
+    channels as well; it gets their first readings.
 
     Args:
         source: Source that it writes.
         past: Arguments that get the value of the step before.
         before: Value of `source` before the first step, of one scene, for readers of its past.
-        of: Makes the objects of one scene, of readings too.
+        of: Makes the objects of one scene, from readings if it has arguments.
         name: Name of the module; default the function's. An audit faults modules of one name
-            together: give it to a function that takes another's place in a variant.
+            together, so a function that replaces another in a variant needs its name.
 
     Raises:
-        SystemMistake: The function takes no names, or has no such argument; `of` makes objects of
-            readings and taps some of these objects.
+        SystemMistake: The function has arguments without names, or not the named one; `of` makes
+            objects from readings and taps some of them.
     """
-    late = (past,) if isinstance(past, str) else tuple(past)
+    past = (past,) if isinstance(past, str) else tuple(past)
     return lambda function: FunctionModule(
-        function, source, late, before, {}, of, name or function.__name__
+        function, source, past, before, {}, of, name or function.__name__
     )
 
 
 class FunctionModule(Module):
-    """A module that is a function; see `writes`."""
+    """A module made of a function; see `writes`."""
 
     def __init__(
         self,
@@ -76,9 +75,9 @@ class FunctionModule(Module):
         self._function, self._past, self._before, self._values = function, past, before, values
         self._of = of
         parameters = dict(signature(function).parameters)
-        if of is not None:  # the first argument are the objects
+        if of is not None:  # the first argument gets the objects
             parameters.pop(next(iter(parameters), ""), None)
-            self._called_with, made_of = tuple(parameters), _required(of)
+            self._called_with, made_of = tuple(parameters), _required_arguments(of)
             self._made_of = tuple(made_of)
             parameters |= made_of
             if made_of.keys() <= values.keys():
@@ -110,15 +109,14 @@ class FunctionModule(Module):
         self._handed_over = tuple(sorted(read))
 
     def _make(self, row: Mapping[str, Any]) -> Made:
-        """Return the objects of a scene, made of a row of readings and values."""
+        """Return the objects of a scene, made from its readings and values."""
         of = cast("Callable[..., Any]", self._of)
         return Made(partial(of, **{name: row[name] for name in self._made_of}))
 
     def given(self, **values: Any) -> "FunctionModule":
-        """Return it with other values for some arguments, which it then reads no more.
+        """Return the module with values for some arguments, which it then no longer reads.
 
-        A value is handed over as it is: a number is one for every scene, where a reading has one a
-        scene, `[B]`.
+        A value is passed as it is: one number for all scenes, where a reading `[B]` has one each.
         """
         values = self._values | values
         source = self.writes[0]
@@ -127,13 +125,13 @@ class FunctionModule(Module):
         )
 
     def __str__(self) -> str:
-        """Return its name and the numbers that it was given."""
+        """Return its name and the numbers given to it."""
         words = [f"{name} {value:g}" for name, value in self._numbers.items()]
         return f"{self.name} ({', '.join(words)})" if words else self.name
 
     @property
-    def place(self) -> str:
-        """File and line of the function; nothing for what is not a user's own function."""
+    def location(self) -> str:
+        """File and line of a user's function; empty for any other."""
         function: Any = unwrap(self._function)
         code = getattr(function, "__code__", None)
         if code is None or ours(function.__module__):
@@ -145,13 +143,13 @@ class FunctionModule(Module):
         return {n: v for n, v in self._values.items() if isinstance(v, int | float)}
 
     def _refused(self, numbers: Iterable[str], error: Exception) -> SystemMistake:
-        """Return what to tell of an error at the first step of a module that was given numbers."""
+        """Return the message for an error at the first step of a module with given numbers."""
         mistake = SystemMistake(
             f"module '{self.name}' fails ({described(error)}) with one number for every scene as "
             f"its {' and '.join(numbers)}, where a reading has one value a scene: let it take "
             "both, or correct it there"
         )
-        mistake.place = place(error)
+        mistake.location = location(error)
         return mistake
 
     @override
@@ -166,7 +164,7 @@ class FunctionModule(Module):
         return [None] * len(batch.scenes) if self._of else None
 
     def _step_scene(self, inputs: Inputs, i: int, scene: Made | None) -> Made:
-        """Let the objects of one scene make a step, after they are made at the first."""
+        """Make a step with the objects of one scene, which are made at the first."""
         rows = {port.channel: inputs[port][i] for port in self._handed_over} | self._values
         if scene is None:
             scene = self._make(rows)
@@ -213,8 +211,7 @@ class FunctionModule(Module):
         return {self.writes[0]: value}, memory
 
 
-def _required(make: Callable[..., Any]) -> dict[str, Parameter]:
-    """Return the arguments that a function cannot be called without."""
+def _required_arguments(make: Callable[..., Any]) -> dict[str, Parameter]:
     try:
         parameters = signature(make).parameters
     except ValueError:  # such as that of `dict`
@@ -230,8 +227,8 @@ def _required(make: Callable[..., Any]) -> dict[str, Parameter]:
 def row_wise(function: Callable[..., Any]) -> Callable[..., Any]:
     """Return a function, such as a torch module, that takes the rows of a batch one at a time.
 
-    A matrix product rounds differently for another number of rows; row by row it gives each scene
-    the same bits, whatever the other scenes. Arrays are `[B, ...]`, also those returned; all other
+    A matrix product rounds differently for another number of rows; row by row each scene gets the
+    same bits whatever the other scenes. Arrays, also the returned ones, are `[B, ...]`; all other
     arguments are passed on unchanged.
     """
 

@@ -12,29 +12,29 @@ from faultpath.core.arrays import HostArray
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import listed
 
-_PLACE = re.compile(r"faultpath_system_\w+\.| at 0x[0-9a-f]+")
-"""The module of a system, called after where its file lies, and where in memory an object is."""
+_LOCATION = re.compile(r"faultpath_system_\w+\.| at 0x[0-9a-f]+")
+"""The module of a system, named after the path of its file, and an object's address in memory."""
 
 
 Look = str | int | slice | tuple[Any, ...] | Callable[[Any], Any]
-"""Place of a source in the observation: a key, an index or slice, several in turn, or a
-function of the batch's observation that returns an array `[B, ...]`."""
+"""A source's part of the observation: a key, an index or slice, several in turn, or a function of
+the batch's observation that returns an array `[B, ...]`."""
 
 
 def look(
     observes: Mapping[str, Look], observations: Sequence[Any], observed: str
 ) -> dict[str, HostArray]:
-    """Return every source, `[B, ...]`, of the observations of single scenes.
+    """Return the values of all sources, `[B, ...]`, from observations of single scenes.
 
-    `observed` is what messages call these. Raises `SystemMistake` for what they do not hold.
+    `observed` names these in messages. Raises `SystemMistake` for a part that they do not have.
     """
-    batch = cache(lambda: stacked(observations))  # most observe a few keys of what may be large
+    batch = cache(lambda: stacked(observations))  # only where needed: the observation may be large
     mapped, sources = isinstance(observations[0], Mapping), dict[str, HostArray]()
     try:
-        for name, at in observes.items():
-            keys = () if callable(at) else at if isinstance(at, tuple) else (at,)
-            if callable(at):
-                part = at(batch())
+        for name, path in observes.items():
+            keys = () if callable(path) else path if isinstance(path, tuple) else (path,)
+            if callable(path):
+                part = path(batch())
             elif mapped and keys and isinstance(keys[0], str):
                 part = stacked([_part(name, row, keys[0], observed) for row in observations])
                 keys = keys[1:]
@@ -64,7 +64,7 @@ def _part(source: str, observation: Any, key: str, observed: str) -> Any:
 
 
 def stacked(rows: Sequence[Any]) -> Any:
-    """Return observations of single scenes as that of a batch."""
+    """Return observations of single scenes as one of a batch."""
     first = rows[0]
     if isinstance(first, Mapping):
         return {
@@ -76,7 +76,7 @@ def stacked(rows: Sequence[Any]) -> Any:
 
 
 def _alike(rows: Sequence[Any]) -> bool:
-    """Return whether `np.array` gives, in a third of the time, what `np.stack` does."""
+    """Return whether `np.array` is equivalent to `np.stack`; it takes a third of the time."""
     first = rows[0]
     if type(first) is float:
         return all(type(row) is float for row in rows)
@@ -93,9 +93,9 @@ def _alike(rows: Sequence[Any]) -> bool:
 
 
 def hashed(*parts: Any) -> str:
-    """Return a hash of arrays, numbers and what holds such, exact to the bit.
+    """Return a hash of arrays, numbers and their containers, exact to the bit.
 
-    Of another object, such as somebody's simulator, it counts that it is there.
+    Any other object, such as a simulator, counts by its `repr` without addresses.
     """
 
     def exact(part: Any) -> str:
@@ -107,6 +107,6 @@ def hashed(*parts: Any) -> str:
         if isinstance(part, np.ndarray | np.generic):
             array = cast("HostArray", part)
             return f"{array.dtype}{array.shape}{array.tobytes().hex()}"
-        return _PLACE.sub("", repr(part))
+        return _LOCATION.sub("", repr(part))
 
     return sha256("\n".join(map(exact, parts)).encode()).hexdigest()

@@ -1,7 +1,7 @@
-"""The options of a system, read from what its factory takes, and handed to it.
+"""The options of a system, declared by the parameters of its factory.
 
 A factory takes keyword parameters, or one pydantic model with a field for each option. Annotations
-say of what type an option is, what may be chosen, and, as a text in `Annotated`, what it means:
+give the type and choices of an option, and a text in `Annotated` its help:
 
     def create(gain: Annotated[Literal["low", "high"], "Gain of the controller."] = "low") -> System
 
@@ -29,7 +29,7 @@ _Built = TypeVar("_Built")
 
 
 _CHECKED: Mapping[str, Callable[[str], object]] = {"int": whole_in, "float": number_in}
-"""Reader of a text by the type of the option; `ValueError` where it is no such number."""
+"""Readers of text by the option's type; `ValueError` for text that is no such number."""
 
 
 @dataclass(frozen=True)
@@ -39,12 +39,12 @@ class Option:
     name: str
     help: str = ""
     choices: tuple[str, ...] = ()
-    """Choices, as text; empty where the values cannot be listed."""
+    """Choices as text; empty where values cannot be listed."""
     default: str | None = None
-    """`None` where there is none, or where other options decide."""
+    """`None` if there is none, or if it depends on other options."""
     required: bool = field(default=False, compare=False, repr=False)
     values: Mapping[str, Any] = field(default_factory=dict[str, Any], compare=False, repr=False)
-    """Values that the choices stand for, by their text."""
+    """Values of the choices, by their text."""
     annotation: Any = field(default=None, compare=False, repr=False)
     factories: bool = field(default=False, compare=False, repr=False)
 
@@ -55,7 +55,7 @@ class Option:
         return kind.__name__ if kind in (int, float) else "str"
 
     def read(self, text: str, system: str) -> Any:
-        """Return the value that `text` stands for; `UserError` where there is none."""
+        """Return the value of a text; `UserError` where there is none."""
         if self.values:
             if text in self.values:
                 return self.values[text]
@@ -68,7 +68,7 @@ class Option:
             _CHECKED.get(self.kind, str)(text)
             return TypeAdapter[Any](self.annotation).validate_python(text)
         except PydanticSchemaGenerationError:
-            return text  # a type of the system's own: it may make of the text what it likes
+            return text  # a type of the system's own, which reads the text itself
         except ValidationError as error:
             says = misfit_of(error).says
         except ValueError as error:
@@ -77,9 +77,9 @@ class Option:
 
 
 class Offered:
-    """In `Annotated`: what of a wider type may be chosen from outside, such as three numbers.
+    """In `Annotated`: the values of a wider type that a user may choose, such as three numbers.
 
-    With `factories` also what a user brings, named as `path/to/file.py:factory`.
+    With `factories` a user may also name one as `path/to/file.py:factory`.
     """
 
     def __init__(self, *choices: object, factories: bool = False) -> None:
@@ -93,10 +93,10 @@ def options_of(factory: Factory) -> tuple[Option, ...]:
 
 
 def call(factory: Callable[..., _Built], texts: Mapping[str, str], system: str) -> _Built:
-    """Return what a factory builds from options given as text.
+    """Return the object that a factory builds from options given as text.
 
-    Raises `UserError`, naming `system`, for an option that the factory does not take or lacks, and
-    for a value that the option cannot have.
+    Raises `UserError`, naming `system`, for an unknown or missing option, and for a value that the
+    option cannot have.
     """
     options, model, any_other = _declared(factory)
     names = ", ".join(options)
@@ -118,9 +118,9 @@ def call(factory: Callable[..., _Built], texts: Mapping[str, str], system: str) 
 
 
 def builds(factory: Factory, kinds: Sequence[type]) -> bool:
-    """Return whether a factory is one of some classes, or annotated to return one or `type` of it.
+    """Return whether a factory is one of some classes, or is annotated to return one.
 
-    Names of the classes that are imported for type checkers only are known.
+    The annotation may name a class that is imported for type checkers only.
     """
     builder: Any = inspect.unwrap(factory)
     known = {kind.__name__: kind for kind in kinds}
@@ -130,7 +130,7 @@ def builds(factory: Factory, kinds: Sequence[type]) -> bool:
 
 
 def as_text(options: Mapping[str, object]) -> dict[str, str]:
-    """Return options as the text that stands for them; `UserError` for what has none."""
+    """Return options as text; `UserError` for a value that has none."""
     for name, value in options.items():
         if not isinstance(value, str | int | float | Enum):
             raise UserError(
@@ -140,10 +140,10 @@ def as_text(options: Mapping[str, object]) -> dict[str, str]:
 
 
 def _declared(factory: Factory) -> tuple[dict[str, Option], type[BaseModel] | None, bool]:
-    """Return what options a factory takes, their model if any, and whether it takes any other."""
+    """Return the options of a factory, their model if any, and whether it takes any others."""
     try:
         parameters: Mapping[str, inspect.Parameter] = inspect.signature(factory).parameters
-    except (TypeError, ValueError):  # of some built-in functions nothing is known
+    except (TypeError, ValueError):  # some built-in functions have no signature
         parameters = dict[str, inspect.Parameter]()
     hints = _hints(factory.__init__ if isinstance(factory, type) else factory, {})
     only = hints.get(next(iter(parameters))) if len(parameters) == 1 else None
@@ -179,17 +179,19 @@ def _declared(factory: Factory) -> tuple[dict[str, Option], type[BaseModel] | No
 
 
 def _hints(builder: Any, known: Mapping[str, type]) -> dict[str, Any]:
-    """Return the annotations that can be read; `known` is what names mean that nothing defines."""
+    """Return the annotations that can be resolved; `known` defines further names."""
     names, hints = {**known, **getattr(builder, "__globals__", {})}, dict[str, Any]()
     for name, written in getattr(builder, "__annotations__", {}).items():
         holder = types.SimpleNamespace(__annotations__={name: written})
-        with suppress(NameError, TypeError, AttributeError, SyntaxError):  # for type checkers only
+        with suppress(
+            NameError, TypeError, AttributeError, SyntaxError
+        ):  # names for type checkers only
             hints |= typing.get_type_hints(holder, names, include_extras=True)
     return hints
 
 
 def _needed(kind: Any) -> Any:
-    """Return the type of `kind` where it may also be `None`, else `kind` itself."""
+    """Return `kind` without `None`."""
     some = [member for member in get_args(kind) if member is not types.NoneType]
     return some[0] if len(some) == 1 and len(get_args(kind)) == 2 else kind
 

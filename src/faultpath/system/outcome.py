@@ -1,4 +1,4 @@
-"""Outcome of one trial: how it ended, and metrics by name."""
+"""Outcome of one trial: its status, and metrics by name."""
 
 import math
 from collections.abc import Collection, Mapping
@@ -26,12 +26,12 @@ class Metric(Frozen):
     """`1` for a number without a unit."""
     better: Literal["less", "more"]
     words: Words = ""
-    """Words for it within a sentence; empty for its name without the unit."""
+    """Its name within a sentence; empty: the metric's name without the unit."""
     title: Words = ""
-    """Heading above a picture; empty for its words."""
+    """Heading above a picture; empty: its words."""
 
     def label(self, name: str) -> str:
-        """Return its words, given its name."""
+        """Return its name within a sentence."""
         return self.words or name.removesuffix(f"_{self.unit}").replace("_", " ")
 
 
@@ -41,8 +41,8 @@ VEHICLE = {
     ),
     "min_clearance_m": Metric(unit="m", better="more", words="least clearance"),
 }
-"""Metrics of records that name none: all of these are of a vehicle that flies to a goal. Tables
-hold both or neither."""
+"""Metrics of a vehicle that flies to a goal, and of results that name no metrics. Tables hold both
+or neither."""
 
 
 class Status(StrEnum):
@@ -52,17 +52,17 @@ class Status(StrEnum):
     CRASH = "crash"
     TIMEOUT = "timeout"
     FAILED = "failed"
-    """The program raised an error, hung, died, or gave something else when asked again: the trial
-    says nothing and voids every pair it is part of."""
+    """The program raised an error, hung, died, or gave another result when run again: the trial is
+    excluded with every pair it belongs to."""
 
 
 @dataclass(frozen=True)
 class Outcome:
     """The result of one closed-loop trial in one scene.
 
-    The three hashes are of the initial state, the disturbance series and the planner's noise. Two
-    trials may be compared as a pair only when all three agree. Where there is nothing to hash, as
-    without a planner that draws, the text is `none`: an empty one proves nothing and is refused.
+    The three hashes are of the initial state, the disturbances and the planner's noise. Two trials
+    are a pair only if all three agree. Where there is nothing to hash, as without a random planner,
+    the text is `none`: an empty one proves nothing and is refused.
     """
 
     scene: str
@@ -75,32 +75,32 @@ class Outcome:
     metrics: Mapping[str, float | None] = field(default_factory=dict[str, float | None])
     """Other measurements, by name, as the system's `metrics` declare it."""
     faulted_steps: int = 0
-    """Control steps at which a fault was in force at some tap that delivered."""
+    """Control steps with a fault in force at one or more taps that delivered."""
     altered_steps: int = 0
-    """Control steps at which what a reader got differed from the reading."""
+    """Control steps at which a reader got another value than the reading."""
     error: str | None = None
     trace: NDArray[np.float32] | None = None
     """Position at each control step, `[T, 3]`, metres, world frame."""
     trajectory_hash: str = ""
-    """Of all that its readers got while it ran, to the bit; empty where other tools ran it."""
+    """Hash of all values that its readers got while it ran; empty for other tools' trials."""
 
     @property
     def met(self) -> tuple[str, tuple[str, ...]]:
-        """The scene, and the hashes of what the trial met there."""
+        """The scene, and the hashes of the trial's conditions there."""
         return self.scene, (self.initial_hash, self.disturbance_hash, self.planner_noise_hash)
 
     @property
     def failed(self) -> bool:
-        """Whether the program failed, so that the trial says nothing."""
+        """Whether the program failed, so that the trial has no outcome."""
         return self.status is Status.FAILED
 
     def steps(self, dt_s: float) -> int:
-        """Return how many control steps of `dt_s` it took."""
+        """Return its number of control steps of `dt_s`."""
         return control_steps(self.time_s, dt_s)
 
 
 def control_steps(time_s: float, dt_s: float) -> int:
-    """Return how many control steps a time took that is a rounded sum of them."""
+    """Return the number of control steps in a time that is a rounded sum of them."""
     return math.ceil(time_s / dt_s - 1e-6)
 
 
@@ -121,11 +121,11 @@ class _Malformed(Exception):
 
 
 def checked(outcome: Outcome, metrics: Collection[str] = ()) -> Outcome:
-    """Return what a system said of one trial, with plain numbers and a trace in float32.
+    """Return a system's outcome of one trial with plain numbers and a trace in float32.
 
-    Where it says something that cannot be (a number that is not finite, a status that is none, a
-    metric that is not among the declared `metrics`, a trace that is no `[T, 3]`), the trial is
-    failed and its error says what.
+    A malformed outcome (a number that is not finite, an unknown status, a metric that is not among
+    the declared `metrics`, a trace that is no `[T, 3]`) makes the trial failed; its error says what
+    is wrong.
     """
     status: Any = outcome.status
     if status is Status.FAILED:
@@ -156,7 +156,7 @@ def checked(outcome: Outcome, metrics: Collection[str] = ()) -> Outcome:
             altered_steps=0,
             trajectory_hash="",
             error=None if outcome.error is None else _text(outcome.error),
-            trace=None if outcome.trace is None else _path(outcome.trace),
+            trace=None if outcome.trace is None else _positions(outcome.trace),
         )
     except _Malformed as error:
         return failed_outcome(outcome.scene, f"malformed outcome: {error}")
@@ -174,15 +174,15 @@ def _number(name: str, value: Any) -> float:
     return number
 
 
-def _path(trace: Any) -> NDArray[np.float32]:
+def _positions(trace: Any) -> NDArray[np.float32]:
     try:
         with np.errstate(over="ignore"):  # what overflows is not finite, and refused below
-            path = np.asarray(trace, dtype=np.float32)
+            positions = np.asarray(trace, dtype=np.float32)
     except (TypeError, ValueError, RuntimeError):
         raise _Malformed("trace is no array of numbers") from None
-    if path.ndim != 2 or path.shape[1] != 3:
-        raise _Malformed(f"trace has the shape {list(path.shape)}, not [steps, 3]")
-    lost = np.flatnonzero(~np.isfinite(path).all(axis=1))
-    if lost.size:
-        raise _Malformed(f"trace is not finite at step {lost[0]}")
-    return path
+    if positions.ndim != 2 or positions.shape[1] != 3:
+        raise _Malformed(f"trace has the shape {list(positions.shape)}, not [steps, 3]")
+    wrong = np.flatnonzero(~np.isfinite(positions).all(axis=1))
+    if wrong.size:
+        raise _Malformed(f"trace is not finite at step {wrong[0]}")
+    return positions

@@ -1,4 +1,4 @@
-"""Finds what the parts of a program share: one object in several, or a number that each keeps."""
+"""Finds values that parts of a program share: one object in several, or copies of a number."""
 
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping
@@ -12,7 +12,7 @@ from faultpath.core.arrays import HostArray
 from faultpath.core.text import listed
 
 _MOST = 100_000
-"""Objects of one part that are looked at, so that a walk ends."""
+"""Objects of one part that are visited at most, so that a walk ends."""
 _LEAVES = (str, bytes, bool, int, float, complex, type, ModuleType, type(None), np.generic)
 
 
@@ -21,13 +21,13 @@ class Shared:
     """A value that several parts read: a candidate for a channel with a reader in each part."""
 
     what: str
-    """The class of an object, or the value of a number."""
+    """Class of an object, or name and value of a number."""
     places: tuple[str, ...]
     """Places such as `observer.par`; at least one in each of two parts."""
     alias: bool
-    """Whether it is one object; else each part keeps an equal number under one name."""
+    """Whether it is one object; else each part keeps an equal number of the same name."""
     written: tuple[str, ...]
-    """Places of numbers in it that changed while `run` ran."""
+    """Places of its numbers that changed while `run` ran."""
 
     def __str__(self) -> str:
         sentence = f"{self.what} {'is one object ' if self.alias else ''}at {listed(self.places)}"
@@ -37,16 +37,16 @@ class Shared:
 def shared_objects(
     parts: Mapping[str, Any], run: Callable[[], Any] | None = None
 ) -> tuple[Shared, ...]:
-    """Return what several parts of a program share, objects first.
+    """Return the values that several parts of a program share, objects first.
 
     It follows attributes, keys, items, bound methods and closures, but not compiled code. The
-    contents of a shared object are listed only together with a copy outside of it. A number that
-    two parts keep under one name may be copied from one source. Zeros, whole numbers and booleans
+    contents of a shared object are listed only if there is a copy outside of it. A number of the
+    same name in two parts may have been copied from one source. Zeros, whole numbers and booleans
     are left out.
 
     Args:
-        parts: The objects that read, by a name for each.
-        run: Makes a step or more; numbers that it changes are named.
+        parts: The objects that read, by name.
+        run: Makes one or more steps; the result names the numbers that it changes.
     """
     walks = [Walk(part, root) for part, root in parts.items()]
     reached: dict[int, list[Walk]] = {}
@@ -92,13 +92,13 @@ class _Object:
 
 
 class Walk:
-    """Objects and numbers that can be reached from one part, by the shortest way."""
+    """Objects and numbers that can be reached from one part, each by its shortest path."""
 
     def __init__(self, part: str, root: Any) -> None:
         self.objects: dict[int, _Object] = {}
-        """By identity: what can be changed, and so matters if it is shared."""
+        """Mutable objects by identity; only these matter if they are shared."""
         self.numbers: dict[str, HostArray] = {}
-        """By place, copied."""
+        """Copies of numbers, by place."""
         seen: set[int] = set()
         waiting = deque([_Object(root, part, 0)])
         while waiting and len(seen) < _MOST:
@@ -120,7 +120,7 @@ class Walk:
             waiting += [_Object(f, f"{node.place}.{n}", key) for n, f in _members(value)]
 
     def inside(self, shared: Mapping[int, Any]) -> Iterator[str]:
-        """Yield the places of numbers that lie in shared objects."""
+        """Yield the places of numbers in shared objects."""
         tops = [node.place for key, node in self.objects.items() if key in shared]
         for place in self.numbers:
             if any(place == top or place.startswith(f"{top}.") for top in tops):
@@ -128,16 +128,17 @@ class Walk:
 
 
 def _members(holder: Any) -> Iterator[tuple[str, Any]]:
-    """Yield the values that an object holds, with their names."""
     if isinstance(holder, MethodType):
         yield "__self__", holder.__self__
     elif isinstance(holder, FunctionType):
         for name, cell in zip(holder.__code__.co_freevars, holder.__closure__ or (), strict=True):
             try:
                 yield name, cell.cell_contents
-            except ValueError:  # not filled yet
+            except ValueError:  # its variable is not set yet
                 continue
-    elif isinstance(holder, dict):  # of a stand-in what it holds, not what is delivered
+    elif isinstance(
+        holder, dict
+    ):  # `dict.items` gets the contents of a stand-in, without a delivery
         for key, value in cast("Any", dict).items(holder):
             yield str(key), value
     elif isinstance(holder, Mapping):

@@ -1,4 +1,4 @@
-"""The closed loop that an audit runs, as the rest of faultpath sees it."""
+"""The base class of systems: the closed loop that an audit runs."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
@@ -17,21 +17,23 @@ from faultpath.system.declared import FloorPlan, Library, Variant
 from faultpath.system.outcome import Metric, Outcome, Status
 
 BLOCK = 20
-"""Scenes of a block, unless the system states its own."""
+"""Default number of scenes in a block."""
 
 Values: TypeAlias = NDArray[np.float64]
 
 
 class TrialReadings(Protocol):
-    """Readings recorded in one trial, `[T, P]`: a row a control step, not a number where nothing
-    was read. `KeyError` for what the variant has not got."""
+    """Readings recorded in one trial, `[T, P]`: a row a control step, NaN where nothing was read.
+
+    `KeyError` for a source or reader that the variant does not have.
+    """
 
     def held(self, source: str) -> Values:
-        """Return what a source held."""
+        """Return the values of a source."""
         ...
 
     def got(self, channel: str, reader: str) -> Values:
-        """Return what a tap delivered, faults included."""
+        """Return the values that a tap delivered, faults included."""
         ...
 
 
@@ -40,20 +42,20 @@ class ErrorTerm:
     """The error of one module, believed minus true."""
 
     words: str
-    """The module, and what it has wrong: `controller: gain`."""
+    """The module, and the quantity in error: `controller: wrong gain`."""
     of: Callable[[TrialReadings], Values]
-    """Takes it from a trial, a number a step; a pure function."""
+    """Computes the error from a trial, a number a step; a pure function."""
 
 
 @dataclass(frozen=True)
 class ErrorSum:
-    """Two errors that act together: what the system feels is their sum.
+    """Two errors that act together: their sum acts on the system.
 
     A system that knows of such has one as its attribute `errors`.
     """
 
     words: str
-    """Quantity that both change: `error of the expected acceleration`."""
+    """The quantity they both change: `error of the expected acceleration`."""
     unit: str
     terms: tuple[ErrorTerm, ErrorTerm]
 
@@ -61,37 +63,37 @@ class ErrorSum:
 class System(ABC):
     """A closed loop with its information interface.
 
-    `run` must give each scene a result that does not depend on which other scenes are in the call:
-    randomness comes from `faultpath.core.streams`, keyed by scene.
+    `run` must give each scene a result that does not depend on the other scenes of the call, so
+    random numbers come from `faultpath.core.streams`, keyed by scene.
     """
 
     name: str
     control_dt_s: float
     block_size: int | None = BLOCK
-    """Scenes handed to one call of `run`: the unit of work, of storage and of resuming. `None`: as
-    `scenes_a_block` says."""
+    """Scenes in one call of `run`: the unit of work, of storage and of resuming. `None`: see
+    `scenes_a_block`."""
     parallel: bool = True
-    """Whether several worker processes are faster than one; not where a GPU does the work."""
+    """Whether several worker processes are faster than one; usually not with a GPU."""
     time_limit_s: float | None = None
-    """Seconds that a worker may take over one block, or one scene of a block that failed, unless
-    the user says otherwise; `None`: an hour."""
+    """Default time limit of a worker for one block, or for one scene of a block that failed, s;
+    `None`: an hour."""
     trained: bool = False
-    """Whether variants hold trained models: results then speak of these models, as trained."""
+    """Whether variants hold trained models; results are then about these models, as trained."""
     metrics: Mapping[str, Metric] = MappingProxyType({})
     """Measurements of its outcomes beside status and time, by name."""
     ends: Mapping[Status, str] = MappingProxyType({})
-    """Words for a trial's end where it is not called by its status, for example `missed`."""
+    """Words for a status in place of its own name, for example `missed`."""
     errors: ErrorSum | None = None
-    """Two errors that act together, for the report; no trial reads them."""
+    """Two errors that act together, for the report; trials do not use them."""
     more_signals: str = ""
-    """`module:function` of what a recorded trial says beside its readings, in place of `errors`:
-    `function(system, recorded, done)` returns a tuple of signals a scene. It is a name, since
-    whatever a system imports counts as run."""
+    """`module:function` for more signals of a recorded trial, in place of `errors`:
+    `function(system, recorded, done)` returns a tuple of signals a scene. It is a name, because
+    everything that a system imports counts as code of its trials."""
 
     @property
     @abstractmethod
     def interface(self) -> Interface:
-        """Channels that the modules read, and the sources they come from."""
+        """Channels that the modules read, and their sources."""
 
     @property
     @abstractmethod
@@ -104,7 +106,7 @@ class System(ABC):
         return {}
 
     def fault(self, text: str | FaultText) -> tuple[Fault, ...]:
-        """Return the faults that a text states, one for each channel; see `parse_fault`."""
+        """Return the faults in a text, one for each channel; see `parse_fault`."""
         return parse_fault(text, self.interface, self.fault_presets, self.control_dt_s)
 
     @abstractmethod
@@ -115,47 +117,46 @@ class System(ABC):
     def run(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> Sequence[Outcome]:
         """Run one trial in each scene, in order; every reading goes through `taps`.
 
-        The taps are new, and for these scenes. Who runs the block fills `faulted_steps` and
-        `altered_steps` in from their receipts.
+        The taps are new and for these scenes. The caller fills in `faulted_steps` and
+        `altered_steps` from their delivery log.
         """
 
     def scenes_a_block(self, scenes: int) -> int:
-        """Return the size of the blocks of a library with so many scenes.
+        """Return the size of the blocks of a library of `scenes` scenes.
 
-        It follows from counts alone, never from how long a block took, so that a run that is
-        resumed, on whatever machine, finds its blocks again.
+        It depends on counts alone, never on measured times, so that a resumed run finds its blocks
+        again on any machine.
         """
         del scenes
         return self.block_size or BLOCK
 
     @property
     def data_files(self) -> Sequence[str | PathLike[str]]:
-        """Files and folders whose contents decide a result, such as weights.
+        """Files and folders on whose contents a result depends, such as weights.
 
-        Relative ones are looked for beside the file of the system. A change of their contents is
-        noticed as one of the source is: trials of before are not taken for trials of now.
+        Relative paths start at the folder of the system's file. Like a change of the source, a
+        change of their contents means that earlier trials are not reused.
         """
         return ()
 
     @property
     def parts(self) -> Sequence[str]:
-        """Factories of parts that the user named, as `path/to/file.py:factory`, if it takes any.
+        """Factories of the user's parts, as `path/to/file.py:factory`, if it takes any.
 
-        Their code counts as the system's own does.
+        Their code counts as the system's own.
         """
         return ()
 
     def fingerprint(self) -> str:
-        """Return what decides a result and stands in no file: a device, an option, a service.
+        """Return anything on which results depend and that is in no file: a device, a service.
 
-        Source, data files and versions of packages are found without it; see
-        `faultpath.run.code`.
+        Source, data files and versions of packages are found without it; see `faultpath.run.code`.
         """
         return ""
 
     @property
     def backend(self) -> str:
-        """Name of what computes the trials, where that depends on the machine."""
+        """Name of the library or device that computes trials, if it depends on the machine."""
         return ""
 
     def floor_plan(self, scene: str) -> FloorPlan | None:

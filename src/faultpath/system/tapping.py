@@ -1,4 +1,4 @@
-"""Taps on other people's objects: what is read there, or called with, is delivered each time."""
+"""Taps on existing objects: their attributes, keys or arguments are delivered at each read."""
 
 from collections.abc import Callable, Generator, Iterator, Mapping
 from contextlib import contextmanager
@@ -17,11 +17,11 @@ from faultpath.system.sharing import Walk
 T = TypeVar("T")
 
 _MADE: ContextVar[list["Reads"] | None] = ContextVar("_MADE", default=None)
-"""Collects the stand-ins of the objects that are being made."""
+"""Collects the stand-ins of the objects under construction."""
 
 
 class Reads:
-    """The reads of one stand-in, and what delivers them at present."""
+    """The reads of one stand-in, and the inputs of the present step."""
 
     def __init__(self, at: str, what: Any, channels: Mapping[str, str]) -> None:
         self.at, self.what = at, what
@@ -29,13 +29,13 @@ class Reads:
         # Readers are in small letters, which attributes need not be.
         self.ports = {n: Port(channel, f"{at}.{n.lower()}") for n, channel in channels.items()}
         self.own: dict[str, Any] = {}
-        """Values that its reader wrote itself. From there on it reads these, as it would from an
-        object of its own; readers elsewhere go on reading what is delivered."""
+        """Values that its reader wrote itself. It reads these from then on, as it would from an
+        object of its own; other readers still get the delivered values."""
         self.inputs: Inputs | None = None
         self.row = 0
 
     def read(self, name: str) -> Any:
-        """Return what the reader gets of an attribute or key, one scene's row."""
+        """Return the delivered value of an attribute, key or argument, one scene's row."""
         if name in self.own:
             return self.own[name]
         if self.inputs is None:
@@ -81,28 +81,28 @@ def tapped(what: T, *names: str, at: str, **channels: str) -> T:
     """Return a stand-in that gets some attributes, keys or arguments delivered at each read.
 
     Each of them is a channel, by default of the same name, and its reader is `at.name` in small
-    letters. All else is the object's own and stays shared with it: the stand-in is of a class made
-    from the object's, and has the object's own attributes. Once its reader writes into a tapped
-    attribute, the reader gets what it wrote, and no fault reaches it there any more.
+    letters. Everything else is shared with the object: the stand-in is of a class derived from the
+    object's, and has the object's own attributes. Once its reader writes into a tapped attribute,
+    the reader gets its own value, and no fault reaches it there any more.
 
-    A function, a method or a class is tapped where it is called: what is delivered takes the place
-    of these arguments, whether its caller passes them or leaves them out. Put the stand-in where
-    the caller looks: `part.filter.update = tapped(part.filter.update, "speed", at="filter")`.
+    A function, a method or a class is tapped at its call: delivered values replace these arguments,
+    whether the caller passes them or leaves them out. Put the stand-in where the caller looks:
+    `part.filter.update = tapped(part.filter.update, "speed", at="filter")`.
 
-    Make stand-ins in the function that `writes(..., of=make)` calls for each scene. An object that
-    has handed out its own methods leads past its taps; `writes` refuses it and says where.
+    Make stand-ins in the function that `writes(..., of=make)` calls for each scene. An object whose
+    own methods are kept elsewhere can be read past its taps; `writes` refuses it and says where.
 
     Args:
-        what: An object with attributes that Python keeps, a dict, or what is called.
+        what: An object with attributes that Python keeps, a dict, or a callable.
         names: Attributes, keys or arguments that are channels of the same name.
-        at: Who reads them there.
+        at: Module that reads them.
         channels: Attribute, key or argument to channel, for other names.
 
     Raises:
         SystemMistake: There is no such attribute, key or argument, an attribute is a method, or the
-            object keeps its attributes where no stand-in can be: in slots, a tuple or compiled
-            code. When it is read: nothing is delivered yet, because the reader is still being made,
-            or compiled code does not take the arguments by name.
+            object keeps its attributes where no stand-in is possible: in slots, a tuple or compiled
+            code. At a read: nothing is delivered yet, because the reader is still being made, or
+            compiled code does not take the arguments by name.
     """
     kind = cast("type[Any]", type(what))
     if not names and not channels:
@@ -127,9 +127,11 @@ def tapped(what: T, *names: str, at: str, **channels: str) -> T:
         stand_in: Any = type(kind.__name__, (_Keys,), {"reads": reads})()
         cast("Any", dict).update(stand_in, what)
     else:
-        places: dict[str, Any] = {name: _delivered(reads, name) for name in reads.ports}
+        properties: dict[str, Any] = {name: _delivered(reads, name) for name in reads.ports}
         try:
-            derived = new_class(kind.__name__, (kind,), exec_body=lambda body: body.update(places))
+            derived = new_class(
+                kind.__name__, (kind,), exec_body=lambda body: body.update(properties)
+            )
             stand_in = cast("Any", object.__new__(derived))
             object.__setattr__(stand_in, "__dict__", vars(what))
         except TypeError as error:
@@ -152,25 +154,25 @@ def _is_called(what: Any) -> bool:
 
 
 def _called(what: Any) -> str:
-    """Return what messages call a function, method or class."""
+    """Return the name of a function, method or class in messages."""
     return getattr(what.func if isinstance(what, partial) else what, "__qualname__", "a function")
 
 
 def _tapped_call(what: Any, reads: Reads) -> Any:
-    """Return a function that calls `what` with arguments that are delivered."""
-    places = _places(what, reads)
+    """Return a function that calls `what` with delivered arguments."""
+    positions = _positional(what, reads)
 
     @wraps(what, updated=())
     def stand_in(*positional: Any, **named: Any) -> Any:
         values = {name: reads.read(name) for name in reads.ports}
         arguments = list(positional)
-        for index, name in enumerate(places or ()):
+        for index, name in enumerate(positions or ()):
             if name in values and index < len(arguments):
                 arguments[index] = values.pop(name)
         try:
             return what(*arguments, **named | values)
         except TypeError as error:
-            if places is not None:
+            if positions is not None:
                 raise
             raise SystemMistake(
                 f"'{reads.at}' calls {reads.kind}, which is compiled, with {listed(values)} by "
@@ -181,14 +183,14 @@ def _tapped_call(what: Any, reads: Reads) -> Any:
     return stand_in
 
 
-def _places(what: Any, reads: Reads) -> list[str] | None:
-    """Return the arguments that a caller may pass without their name; `None`: nobody knows.
+def _positional(what: Any, reads: Reads) -> list[str] | None:
+    """Return the arguments that may be passed by position; `None` if they are unknown.
 
-    Raises `SystemMistake` for a tapped argument that there is not.
+    Raises `SystemMistake` for a tapped argument that does not exist.
     """
     try:
         parameters = tuple(signature(what).parameters.values())
-    except ValueError:  # compiled code need not say
+    except ValueError:  # compiled code may have no signature
         return None
     known = [p.name for p in parameters if p.kind not in (p.VAR_POSITIONAL, p.VAR_KEYWORD)]
     takes_any = any(p.kind is p.VAR_KEYWORD for p in parameters)
@@ -217,7 +219,7 @@ class Made:
             _MADE.reset(token)
         self.reads = tuple(collected)
         self.last: Any = None
-        """Value that the module returned last for this scene."""
+        """Latest value of the module in this scene."""
 
     @property
     def ports(self) -> frozenset[Port]:
@@ -225,7 +227,7 @@ class Made:
         return frozenset(port for reads in self.reads for port in reads.ports.values())
 
     def check(self) -> None:
-        """Raise `SystemMistake` where what a tapped object holds leads back to it."""
+        """Raise `SystemMistake` where a tapped object's contents refer back to it."""
         for reads in self.reads:
             inner = Walk(reads.kind, getattr(reads.what, "__dict__", {})).objects.get(
                 id(reads.what)
@@ -238,7 +240,7 @@ class Made:
 
     @contextmanager
     def reading(self, inputs: Inputs, row: int) -> Generator[Any]:
-        """Let the stand-ins read what is delivered at a step, and give the objects."""
+        """Let the stand-ins read the inputs of a step, and yield the objects."""
         for reads in self.reads:
             reads.inputs, reads.row = inputs, row
         try:

@@ -6,9 +6,10 @@ from faultpath_paper.answers import StatementPart
 from faultpath_paper.cells import Printed, published
 from faultpath_paper.claims.rules import FEW_SCENES, REFUTED, Bound, Judged, by_point
 from faultpath_paper.claims.statement import Statement, Statements, beside, size
+from faultpath_paper.detection import detection, enough, resampled
 from faultpath_paper.pages import table_5
 from faultpath_paper.quantities.crossing import Crossing, crossing, greater_effect
-from faultpath_paper.results import Results, detection
+from faultpath_paper.results import Results
 
 
 @dataclass(frozen=True)
@@ -56,11 +57,11 @@ def judge(tradeoff: Crossing, bound: Bound) -> Judged:
     Where the repair pays from no frequency on, it is refuted if the repair is detected behind under
     the fault.
     """
-    if not tradeoff.correct.enough:
+    if not enough(tradeoff.correct):
         return FEW_SCENES
     if tradeoff.value is not None:
         return bound.judge(tradeoff.value, tradeoff.interval, tradeoff.correct.n_scenes)
-    behind = detection(tradeoff.faulty.resampled()) < 0
+    behind = detection(resampled(tradeoff.faulty)) < 0
     return REFUTED if behind else Judged("undecided", "pays from no frequency on")
 
 

@@ -8,9 +8,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from faultpath.stats.contrast import ROUNDING, Contrast
+from faultpath.stats.contrast import Contrast
+from faultpath.stats.resamples import ROUNDING
 from faultpath_paper.answers import Answer
-from faultpath_paper.results import detection
+from faultpath_paper.detection import detection, enough, least_detectable, significant_side
 
 POINT_SCENES = 50
 """Scenes from which on an estimate decides where the paper's own does: half of the paper's
@@ -85,11 +86,12 @@ def not_detected(sign: int | None = None) -> Rule:
     def judge(contrast: Contrast) -> Judged:
         if contrast.interval is None:
             return FEW_SCENES
-        if contrast.detected:
-            return REFUTED if sign in (None, contrast.detected) else CONFIRMED
-        if contrast.least is None:
+        if side := significant_side(contrast):
+            return REFUTED if sign in (None, side) else CONFIRMED
+        least = least_detectable(contrast)
+        if least is None:
             return Judged("undecided", "no difference, however large, is sure to be significant")
-        if contrast.notable is not None and contrast.least > contrast.notable:
+        if contrast.notable is not None and least > contrast.notable:
             return Judged("undecided", "a difference of notable size could have been missed")
         return CONFIRMED
 
@@ -195,7 +197,7 @@ def by_point(sign: int, limit: float = 0.0, *, strict: bool = True) -> Rule:
     bound = Bound(limit, sign, strict)
 
     def judge(contrast: Contrast) -> Judged:
-        if not contrast.enough:
+        if not enough(contrast):
             return FEW_SCENES
         if not points_decide(contrast.n_scenes):
             return FEW_FOR_POINTS

@@ -5,7 +5,8 @@ from math import hypot
 from typing import Any, NamedTuple, Protocol, TypeAlias
 
 from faultpath.report.sentences import wording
-from faultpath.stats.contrast import ROUNDING, Contrast, change
+from faultpath.stats.contrast import Contrast, change
+from faultpath.stats.resamples import ROUNDING
 from faultpath_paper.answers import ClaimVerdict, Size, StatementPart
 from faultpath_paper.cells import Printed, PublishedClaim
 from faultpath_paper.claims.rules import (
@@ -17,6 +18,7 @@ from faultpath_paper.claims.rules import (
     Rule,
     points_decide,
 )
+from faultpath_paper.detection import detection, least_detectable, resampled
 from faultpath_paper.quantities.differences import Pair, together
 from faultpath_paper.results import (
     NotRun,
@@ -24,7 +26,6 @@ from faultpath_paper.results import (
     Results,
     Undecidable,
     decisive,
-    detection,
 )
 
 NO_EFFECT = {"pp": 0.0, "s": 0.0, "m": 0.0, "m/s^2": 0.0, "times": 1.0}
@@ -113,7 +114,7 @@ class Statement:
         """Answer the statement from a run."""
         contrast = self.quantity(results)
         no_effect = NO_EFFECT.get(contrast.unit) if self.rule.sided else None
-        judged = self.rule.judge(contrast.resampled())
+        judged = self.rule.judge(resampled(contrast))
         return shown(self.words, judged, contrast, self.paper, no_effect)
 
 
@@ -130,7 +131,7 @@ def shown(
     `no_effect` as in `size`; `counts` where the quantity has none of its own.
     """
     score = None if contrast.scenes is None else contrast.interval
-    contrast = contrast.resampled()
+    contrast = resampled(contrast)
     return StatementPart(
         words=words,
         answer=judged.answer,
@@ -140,7 +141,7 @@ def shown(
         unit=contrast.unit,
         p_value=None if contrast.test is None else contrast.test.p_value,
         test="" if contrast.test is None else contrast.test.name,
-        mde=contrast.least,
+        mde=least_detectable(contrast),
         counts=wording.won(contrast.won) if contrast.won else counts,
         reason=judged.reason,
         size=size(contrast.value, contrast.interval, contrast.n_scenes, paper, no_effect),
@@ -209,7 +210,7 @@ class Turned(NamedTuple):
         That is an intersection-union test, whose level is that of each effect's. Refuted when the
         change, or either effect, is detected on the other side.
         """
-        moved, before, after = (detection(contrast.resampled()) for contrast in self)
+        moved, before, after = (detection(resampled(contrast)) for contrast in self)
         if self.change.interval is None:
             return FEW_SCENES
         if moved > 0 or before < 0 or after > 0:

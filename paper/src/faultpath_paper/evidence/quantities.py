@@ -20,7 +20,7 @@ from faultpath.core.files import atomic
 from faultpath.core.files.atomic import locked, make_folder
 from faultpath_paper.evidence.inputs import Subject, with_shuffled_history
 from faultpath_paper.evidence.playback import Present
-from faultpath_paper.evidence.recording import Block, Recorded, blocks, quadrotor, recorded
+from faultpath_paper.evidence.recording import Block, RecordedWindows, blocks, quadrotor, recorded
 from faultpath_paper.evidence.table import (
     EvidenceTable,
     Measured,
@@ -32,7 +32,7 @@ from faultpath_paper.evidence.table import (
 
 
 @torch.inference_mode()
-def measured(measurement: Measurement, recorded: Recorded) -> Measured:
+def measured(measurement: Measurement, recorded: RecordedWindows) -> Measured:
     """Measure on every window.
 
     A window's number does not depend on the windows beside it, to the bit, unless a fault on the
@@ -182,5 +182,5 @@ def _path(measurement: Measurement, flown: Blocks, folder: Path) -> Path:
 
 
 @lru_cache(maxsize=1)
-def _recorded(flown: Blocks, folder: Path) -> Recorded:
+def _recorded(flown: Blocks, folder: Path) -> RecordedWindows:
     return recorded(flown, folder)

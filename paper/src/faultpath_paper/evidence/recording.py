@@ -47,7 +47,7 @@ class Block:
 
 
 @dataclass(frozen=True)
-class Recorded:
+class RecordedWindows:
     """The windows of a recording, in the order of their scenes, then of their time."""
 
     windows: Windows
@@ -92,13 +92,13 @@ def blocks(recording: Recording, count: int | None) -> tuple[Block, ...]:
     return tuple(library_blocks)
 
 
-def recorded(blocks: Sequence[Block], folder: Path) -> Recorded:
+def recorded(blocks: Sequence[Block], folder: Path) -> RecordedWindows:
     """Read stored blocks of one recording and cut their windows."""
     tensors = joined(block.rows(folder) for block in blocks)
     flown = FlightData.of(blocks[0].recording.name, tensors)
     place = places(flown, STRIDE)
     scenes = [scene for block in blocks for scene in block.scenes]
-    return Recorded(
+    return RecordedWindows(
         cut(flown, STRIDE),
         tuple(scenes[episode] for episode in place[:, 0].tolist()),
         place[:, 2] + HISTORY,

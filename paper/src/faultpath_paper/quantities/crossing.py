@@ -7,6 +7,7 @@ import numpy as np
 from faultpath.stats.contrast import Contrast, percentile_interval
 from faultpath.stats.inputs import Floats
 from faultpath_paper.cells import Cell
+from faultpath_paper.detection import enough
 from faultpath_paper.quantities.differences import together
 from faultpath_paper.results import Quantity, Results, decisive
 
@@ -41,7 +42,7 @@ def crossing(results: Results, repair: Repair) -> Crossing:
         correct=correct,
         faulty=faulty,
         value=None if np.isnan(value) else value,
-        interval=percentile_interval(drawn) if correct.enough else None,
+        interval=percentile_interval(drawn) if enough(correct) else None,
     )
 
 

@@ -25,7 +25,7 @@ def ended(status: Status) -> Effect:
     """Return the difference in how many trials end in a way, with the paper's test."""
 
     def effect(pairs: Pairs, resamples: Resamples) -> Contrast:
-        return with_test(success_effect(*pairs.ended(status), resamples))
+        return with_test(success_effect(*pairs.ended(status), resamples, test="conditional"))
 
     return effect
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.stats.contrast import Contrast, weighted_sum
-from faultpath.stats.effects import WindowQuantiles
 from faultpath_paper.evidence.table import QUANTITIES, EvidenceTable, Measured, Measurement
+from faultpath_paper.quantities.window_quantiles import WindowQuantiles
 from faultpath_paper.results import NotRun, Quantity, Results, Undecidable, decisive
 
 Subject: TypeAlias = tuple[Measurement, ...]

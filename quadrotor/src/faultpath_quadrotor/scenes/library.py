@@ -25,7 +25,7 @@ FROZEN = ("training", "selection", "held-out", "confirmation", "decision")
 
 
 @dataclass(frozen=True)
-class Library:
+class SceneLibrary:
     """Scenes that belong together.
 
     Attributes:
@@ -39,7 +39,7 @@ class Library:
     content_hash: str
 
     @classmethod
-    def of(cls, name: str, scenes: tuple[Scene, ...]) -> "Library":
+    def of(cls, name: str, scenes: tuple[Scene, ...]) -> "SceneLibrary":
         """Return the library of some scenes, with its hash."""
         return cls(name, scenes, digest([name, *(scene.content_hash for scene in scenes)]))
 
@@ -53,7 +53,7 @@ class Library:
         return self.scenes[index]
 
 
-def load_library(name: str | Path) -> Library:
+def load_library(name: str | Path) -> SceneLibrary:
     """Return a frozen library by its name, or a library from a file that can be flown.
 
     Raises `UserError` where there is no such file, it is damaged, or a scene cannot be flown.
@@ -74,7 +74,7 @@ def frozen_file(name: str) -> Traversable:
     return files("faultpath_quadrotor.scenes") / "frozen" / f"{name}.json"
 
 
-def _read(file: Traversable | Path, what: str) -> Library:
+def _read(file: Traversable | Path, what: str) -> SceneLibrary:
     """Read a library file and check it against its hash; `what` names it in errors."""
     remedy = f"make it again, or use one of {', '.join(FROZEN)}"
     try:
@@ -87,7 +87,7 @@ def _read(file: Traversable | Path, what: str) -> Library:
             )
         entries: list[object] = list(content["scenes"])
         scenes = tuple(_scene(place, entry) for place, entry in enumerate(entries))
-        library, promised = Library.of(str(content["name"]), scenes), content["content_hash"]
+        library, promised = SceneLibrary.of(str(content["name"]), scenes), content["content_hash"]
     except (OSError, ValueError, KeyError, TypeError) as error:
         cause = error.strerror if isinstance(error, OSError) else str(error)
         reason = (str(cause).splitlines() or [type(error).__name__])[0]
@@ -111,7 +111,7 @@ def _scene(place: int, entry: object) -> Scene:
         raise ValueError(f"scene {place}, {field}") from None
 
 
-def _refusal(library: Library) -> str:
+def _refusal(library: SceneLibrary) -> str:
     if library.name in FROZEN:
         frozen = json.loads(frozen_file(library.name).read_text(encoding="utf-8"))
         if library.content_hash != frozen["content_hash"]:
@@ -124,7 +124,7 @@ def _refusal(library: Library) -> str:
     return ""
 
 
-def as_text(library: Library) -> str:
+def as_text(library: SceneLibrary) -> str:
     """Return a library as the text of its file, one scene per line."""
     head = {"format": FORMAT, "name": library.name, "content_hash": library.content_hash}
     lines = ",\n".join(

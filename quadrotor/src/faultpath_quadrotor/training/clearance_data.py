@@ -22,7 +22,7 @@ from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.scenes.scene import Scene
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.training.parts import CLEARANCE_POOL, Progress
-from faultpath_quadrotor.training.pool import Part, PoolRecipe, code_of, make_pool, read_pool
+from faultpath_quadrotor.training.pool import PoolPart, PoolRecipe, code_of, make_pool, read_pool
 from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M
 
 PER_METRE = 10_000
@@ -96,7 +96,7 @@ def collect(
     """Make the data set in `folder` and return its file; see `make_pool`."""
     settings = settings or ClearanceRecipe()
     library = load_library(settings.library)
-    parts = [Part(f"{scene.index:03d}", 1, partial(draw, settings, scene)) for scene in library]
+    parts = [PoolPart(f"{scene.index:03d}", 1, partial(draw, settings, scene)) for scene in library]
     return make_pool(folder, recipe(settings), parts, workers, progress)
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from faultpath.plugin.system import UserError
 from faultpath_quadrotor.training.flight import fly
 from faultpath_quadrotor.training.parts import Progress
-from faultpath_quadrotor.training.pool import Part, PoolRecipe, code_of, make_pool
+from faultpath_quadrotor.training.pool import PoolPart, PoolRecipe, code_of, make_pool
 
 EPISODES = {"nominal": 7_150, "wind": 14_891}  # paper, Section IV-A
 BATCH = 1024
@@ -48,11 +48,11 @@ def recipe(pool: str, episodes: int | None = None, seed: int = 0) -> PoolRecipe:
     return PoolRecipe(pool=pool, episodes=count, seed=seed, code_sha256=code_of())
 
 
-def _batches(recipe: PoolRecipe) -> list[Part]:
+def _batches(recipe: PoolRecipe) -> list[PoolPart]:
     every = range(recipe.episodes)
     batches = (every[first : first + BATCH] for first in every[::BATCH])
     return [
-        Part(
+        PoolPart(
             f"{batch.start:06d}+{len(batch)}",
             len(batch),
             partial(fly, recipe.pool, batch, recipe.seed),

@@ -63,7 +63,7 @@ class PartData(Protocol):
 
 
 @dataclass(frozen=True)
-class Part:
+class PoolPart:
     """Data that are made together."""
 
     name: str
@@ -81,7 +81,7 @@ def pool_path(folder: Path, name: str) -> Path:
 def make_pool(
     folder: Path,
     recipe: PoolRecipe,
-    parts: Sequence[Part],
+    parts: Sequence[PoolPart],
     workers: int,
     progress: Progress | None = None,
 ) -> Path:

@@ -25,7 +25,7 @@ from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.training import recorded
 from faultpath_quadrotor.training.parts import TRAJECTORY_POOL, Progress
-from faultpath_quadrotor.training.pool import Part, PoolRecipe, code_of, make_pool
+from faultpath_quadrotor.training.pool import PoolPart, PoolRecipe, code_of, make_pool
 from faultpath_quadrotor.training.recorded import Flights, blank_values
 from faultpath_quadrotor.vehicle import CONTROL_RATE_HZ
 
@@ -67,7 +67,7 @@ def record(folder: Path, workers: int = 2, progress: Progress | None = None) -> 
     predictor's checkpoint is missing.
     """
     batches = [
-        Part(f"{level}-{first:03d}", BLOCK, partial(fly, level, first))
+        PoolPart(f"{level}-{first:03d}", BLOCK, partial(fly, level, first))
         for level in LEVELS
         for first in range(0, SCENES, BLOCK)
     ]

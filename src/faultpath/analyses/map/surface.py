@@ -23,11 +23,11 @@ from faultpath.analyses.map.lattice import (
     rays,
     sizes,
 )
-from faultpath.stats.contrast import MIN_SCENES, ROUNDING
 from faultpath.stats.distributions import binomial_cdf, normal_p_value
 from faultpath.stats.estimate import Sign
 from faultpath.stats.inputs import Floats
-from faultpath.stats.resamples import Resamples
+from faultpath.stats.power import MIN_SCENES
+from faultpath.stats.resamples import ROUNDING, Resamples
 from faultpath.stats.score import SceneValues, interval, quantile, rejects
 
 Signs = NDArray[np.int64]
@@ -58,7 +58,12 @@ class Differences:
     @cached_property
     def far(self) -> Floats:
         """How far from 0 a scene may lie that was not observed `[points]`, percentage points."""
-        return np.array([SceneValues.paired(row / 100.0, 1.0).far * 100.0 for row in self.values])
+        return np.array(
+            [
+                SceneValues.paired(row / 100.0, 1.0, test="conditional").far * 100.0
+                for row in self.values
+            ]
+        )
 
     def mean(self, point: Point) -> float:
         """Return the mean difference at a point."""

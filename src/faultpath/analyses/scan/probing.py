@@ -135,7 +135,7 @@ class _First(Plant):
     def conditions(self, state: Any) -> tuple[Sequence[str], Sequence[str]]:
         return self._plant.conditions(state)
 
-    def over(self, state: Any, step: int) -> bool:
+    def over(self, state: Any, step: int) -> bool | None:
         return self._plant.over(state, step)
 
 

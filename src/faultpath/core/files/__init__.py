@@ -1,1 +1,1 @@
-"""Files that somebody names: what may be opened, and the strict readers of YAML and JSON."""
+"""Files that a user names: what may be opened, and strict readers of YAML and JSON."""

@@ -1,9 +1,8 @@
-"""Files that are either whole or absent, whenever the process is killed; one process at a time in
-a run folder.
+"""Files that are whole or absent even if the process is killed, and a lock for a run folder.
 
-A file takes the place of another file and of nothing else: a device, a pipe, a socket or a folder
-of that name is left as it is. Symbolic links are followed, as by any program that opens a file, so
-that the link stays and what it points to is replaced.
+A file replaces another file and nothing else: a device, a pipe, a socket or a folder of that name
+is left as it is. Symbolic links are followed, as by any program that opens a file, so that the link
+stays and its target is replaced.
 """
 
 import errno
@@ -28,12 +27,12 @@ def write(path: Path, data: bytes, inside: Path | None = None) -> None:
     """Write a file so that a reader, or a machine that loses power, sees all of it or none.
 
     `inside` is the folder that the file belongs to, where faultpath itself names it: a link there
-    that leads out of the folder is refused, since the folder may come from somebody else.
+    that leads out of the folder is refused, since the folder may be another person's.
 
-    Raises `OSError` where the file cannot be written, also where its place holds no file.
+    Raises `OSError` where the file cannot be written, or where `path` is there and no file.
     """
-    place = _place(path, inside)
-    descriptor, name = tempfile.mkstemp(prefix=_PREFIX, dir=place.parent)
+    target = _target(path, inside)
+    descriptor, name = tempfile.mkstemp(prefix=_PREFIX, dir=target.parent)
     try:
         with os.fdopen(descriptor, "wb") as file:
             file.write(data)
@@ -41,12 +40,12 @@ def write(path: Path, data: bytes, inside: Path | None = None) -> None:
             os.fsync(file.fileno())
         os.umask(mask := os.umask(0o022))
         os.chmod(name, 0o666 & ~mask)  # mkstemp hides the file from other users
-        os.replace(name, place)
+        os.replace(name, target)
     except BaseException:
         with suppress(OSError):
             os.unlink(name)
         raise
-    folder = os.open(place.parent, os.O_RDONLY)
+    folder = os.open(target.parent, os.O_RDONLY)
     try:
         os.fsync(folder)
     finally:
@@ -76,21 +75,21 @@ def is_run(folder: Path) -> bool:
 
 
 def begin(folder: Path) -> None:
-    """Make the folder of a run, or go on in it; `UserError` where files stand that are of none."""
+    """Make the folder of a run, or resume in it; `UserError` if it holds files of no run."""
     if not is_run(folder):
         check_free(folder)
     make_folder(folder)
 
 
 def check_free(folder: Path) -> None:
-    """Raise `UserError` for a folder with files that a run which begins there might replace."""
+    """Raise `UserError` for a folder with files that a new run there might replace."""
     if names := sorted(file.name for file in folder.glob("*") if file.suffix in _KINDS):
         raise UserError(f"{folder} holds {names[0]}, which is not of this run: give a new folder.")
 
 
 def check_output(path: Path, mark: bytes | None = None) -> None:
     """Raise `UserError` where a file that the user names cannot be written, belongs to a run, or
-    stands there without the `mark` of what is to replace it."""
+    exists without the `mark` of the file that is to replace it."""
     check_writable(path)
     if path.exists():
         if is_run(Path(os.path.realpath(path)).parent):
@@ -99,30 +98,30 @@ def check_output(path: Path, mark: bytes | None = None) -> None:
 
 
 def check_mark(path: Path, mark: bytes | None) -> None:
-    """Raise `UserError` for a file that does not begin as those do that may replace it."""
+    """Raise `UserError` for a file whose beginning does not hold `mark`."""
     with opened(path) as file:
         head = file.read(4096)
     if head and (mark is None or mark not in head):
         raise UserError(
             f"{path} is there already, and not a file that this may replace: remove it, or "
-            "choose another place."
+            "choose another file."
         )
 
 
 def check_writable(path: Path) -> None:
-    """Raise `UserError` where no file can be written, before the work that is to go into it."""
+    """Raise `UserError` where no file can be written, before the work that would fill it."""
     try:
-        place = _place(path, None)
-        if not place.parent.is_dir():
+        target = _target(path, None)
+        if not target.parent.is_dir():
             raise OSError(errno.ENOENT, "there is no such folder")
-        if not os.access(place.parent, os.W_OK | os.X_OK):
+        if not os.access(target.parent, os.W_OK | os.X_OK):
             raise OSError(errno.EACCES, "permission denied")
     except OSError as error:
         raise _unwritable(path, error) from error
 
 
 def make_folder(path: Path) -> None:
-    """Make a folder, and those above it, where there is none; `UserError` where that fails."""
+    """Make a folder and its parents unless they exist; `UserError` where that fails."""
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -132,7 +131,7 @@ def make_folder(path: Path) -> None:
 
 
 def sweep(folder: Path) -> None:
-    """Remove what killed writers left in a folder. Call it with the folder locked."""
+    """Remove the partial files of killed writers. The caller holds the folder's lock."""
     try:
         for leftover in folder.glob(_PREFIX + "*"):
             leftover.unlink(missing_ok=True)
@@ -142,32 +141,32 @@ def sweep(folder: Path) -> None:
 
 def _unwritable(path: Path, error: OSError) -> UserError:
     return UserError(
-        f"cannot write {path} ({error.strerror}): choose a place that you may write to and that "
-        "has room"
+        f"cannot write {path} ({error.strerror}): choose a folder that you may write "
+        "to and that has room"
     )
 
 
-def _place(path: Path, inside: Path | None) -> Path:
+def _target(path: Path, inside: Path | None) -> Path:
     try:
         mode = os.stat(path).st_mode
-    except FileNotFoundError:  # or a link to where nothing is yet
+    except FileNotFoundError:  # or a link to a file that does not exist yet
         mode = stat.S_IFREG
     except ValueError as error:
         raise OSError(errno.EINVAL, "the path has a null character in it") from error
     if kind := unlike_file(mode):
         raise OSError(errno.EEXIST, f"it is {kind}, not a file")
-    place = Path(os.path.realpath(path))
-    if inside is not None and path.is_symlink() and not place.is_relative_to(inside.resolve()):
+    target = Path(os.path.realpath(path))
+    if inside is not None and path.is_symlink() and not target.is_relative_to(inside.resolve()):
         raise OSError(errno.ELOOP, f"it is a link out of {inside}")
-    return place
+    return target
 
 
 @contextmanager
 def locked(folder: Path, notice: Say) -> Generator[None, None, None]:
-    """Hold the lock of `folder`, waiting for another process that does.
+    """Hold the lock of `folder`, after waiting for any other process that holds it.
 
-    The kernel holds the lock for this process and lets it go when the process dies, however it
-    dies. Its file descriptor is not inherited, so a worker that outlives us cannot keep it.
+    The kernel releases the lock when this process ends, however it ends. Its file descriptor is not
+    inherited, so a worker that outlives this process cannot keep it.
     """
     path = folder / ".lock"
     try:

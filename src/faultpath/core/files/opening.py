@@ -1,7 +1,7 @@
-"""The one place where files are opened that somebody else may have put there.
+"""Opens files that another person may have made; no other module opens those.
 
-A pipe, a device or a socket could be read for ever, or never begin. What is opened is looked at
-after it is open, so that nothing can take its place in between.
+Reading a pipe, a device or a socket might never begin or never end. The check is of the open file,
+so that nothing can replace it between the check and the read.
 """
 
 import errno
@@ -10,13 +10,13 @@ import stat
 from io import BufferedReader
 
 LARGEST = 4 * 2**30
-"""Bytes of a file. A table of a million trials is a hundredth of it; a memory is filled by more."""
+"""Bytes of a file: a hundred times a table of a million trials; more may fill the memory."""
 LARGEST_TEXT = 256 * 2**20
 """Bytes of JSON, which takes several times as much in memory."""
 
 
 def most_unpacked(packed: int) -> int:
-    """Return how many bytes may come of a packed file: a small one must not fill the memory."""
+    """Return how many bytes a packed file may unpack to: a small file must not fill the memory."""
     return min(LARGEST, max(LARGEST_TEXT, 100 * packed))
 
 
@@ -30,14 +30,15 @@ _NO_FILE = (
 
 
 def unlike_file(mode: int) -> str:
-    """Return what is there in place of a file, `a pipe` for one; empty for a file."""
+    """Return what a file mode stands for, such as `a pipe`; empty for a file."""
     return next((kind for is_kind, kind in _NO_FILE if is_kind(mode)), "")
 
 
 def opened(path: str | os.PathLike[str], most: int = LARGEST) -> BufferedReader:
-    """Open a file to read; `OSError`, whose `strerror` says why, for anything but a file.
+    """Open a file to read, without ever waiting.
 
-    Also for one of more than `most` bytes. Never waits.
+    Raises `OSError`, whose `strerror` says why, for anything but a file and for a file of more than
+    `most` bytes.
     """
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
@@ -60,10 +61,10 @@ def opened(path: str | os.PathLike[str], most: int = LARGEST) -> BufferedReader:
 
 
 def contents(path: str | os.PathLike[str], most: int = LARGEST) -> bytes:
-    """Return what is in a file; `OSError` as `opened`."""
+    """Return the contents of a file; raises as `opened`."""
     with opened(path, most) as file:
         data = file.read(most + 1)
-    if len(data) > most:  # it grew, or is one of those that the kernel makes up
+    if len(data) > most:  # it grew, or is one of the kernel's, which state no size
         raise _too_large(path, most)
     return data
 

@@ -1,6 +1,6 @@
-"""Rows to Parquet bytes and back: the only file that talks to pyarrow.
+"""Parquet files from rows and back; no other module uses pyarrow.
 
-The bytes depend on the rows and on the version of pyarrow alone.
+The bytes depend only on the rows and on pyarrow's version.
 """
 
 # pyarrow ships no types.
@@ -28,7 +28,7 @@ class Unreadable(Exception):
 
 
 def encode(schema: Schema, rows: Iterable[Row], notes: Mapping[str, str] | None = None) -> bytes:
-    """Return a Parquet file of `rows`, a column empty where a row lacks it, and of `notes`."""
+    """Return a Parquet file of `rows` and `notes`; a cell is empty where a row lacks the column."""
     columns: dict[str, list[Any]] = {name: [] for name in schema}
     for row in rows:
         for name, values in columns.items():
@@ -39,7 +39,7 @@ def encode(schema: Schema, rows: Iterable[Row], notes: Mapping[str, str] | None 
 def encode_columns(
     schema: Schema, columns: Mapping[str, Any], notes: Mapping[str, str] | None = None
 ) -> bytes:
-    """Return a Parquet file of `columns`, sequences or arrays of one length, and of `notes`."""
+    """Return a Parquet file of `notes` and `columns`, sequences or arrays of one length."""
     table = pa.table({name: pa.array(columns[name], type=kind) for name, kind in schema.items()})
     if notes:
         table = table.replace_schema_metadata(dict(notes))
@@ -49,13 +49,13 @@ def encode_columns(
 
 
 def masked(values: Any) -> Any:
-    """Return an array of numbers as a column that is empty where it holds none."""
+    """Return an array of numbers as a column that is empty where the array holds NaN."""
     return pa.array(values, type=NUMBER, from_pandas=True)
 
 
 @contextmanager
 def _sound() -> Generator[None]:
-    """Raise `Unreadable` for whatever a damaged file leads pyarrow into."""
+    """Turn any error that a damaged file causes in pyarrow into `Unreadable`."""
     try:
         yield
     except MemoryError:
@@ -66,23 +66,25 @@ def _sound() -> Generator[None]:
 
 @_sound()
 def read_table(data: bytes) -> pa.Table:
-    """Return the table in a Parquet file's bytes; `Unreadable` for another, or one too large."""
+    """Return the table of a Parquet file; `Unreadable` for another file or too large a one."""
     for _ in _batches(data):
         pass
     return pq.ParquetFile(pa.BufferReader(data), pre_buffer=False).read(use_threads=False)
 
 
 def _batches(data: bytes) -> Iterator[pa.RecordBatch]:
-    """Yield the rows, counting what they take: columns of equal values are packed to nothing.
-    In this thread alone: a thread of pyarrow's that still lets go of the data while the interpreter
-    shuts down ends the process with an abort."""
+    """Yield the rows until they take too much memory, since equal values are packed to nothing.
+
+    No threads: one of pyarrow's that still releases data while the interpreter shuts down would
+    abort the process.
+    """
     file = pq.ParquetFile(pa.BufferReader(data), pre_buffer=False)
     if len(set(names := file.schema_arrow.names)) < len(names):
         raise Unreadable("two columns have one name")
     about, most, unpacked = file.metadata, most_unpacked(len(data)), 0
     groups = (about.row_group(number) for number in range(about.num_row_groups))
     cells = sum(group.column(n).num_values for group in groups for n in range(group.num_columns))
-    least = 16 * cells  # as values of Python's
+    least = 16 * cells  # bytes as Python objects
     for batch in file.iter_batches(256, use_threads=False) if least <= most else ():
         for column in batch:
             plain = isinstance(column, pa.DictionaryArray) and column.dictionary_decode()
@@ -95,9 +97,9 @@ def _batches(data: bytes) -> Iterator[pa.RecordBatch]:
 
 
 def read_rows(data: bytes) -> Iterator[tuple[int, dict[str, Any]]]:
-    """Yield the rows of anybody's Parquet file, numbered from one; `Unreadable` for another file.
+    """Yield the rows of any Parquet file, numbered from one; `Unreadable` for another file.
 
-    Its columns have any types.
+    Columns may be of any types.
     """
     number = 0
     with _sound():
@@ -114,11 +116,11 @@ def decode(
     more: Any = None,
     absent: Collection[str] = (),
 ) -> tuple[Iterator[dict[str, Any]], dict[str, str]]:
-    """Return the rows of a Parquet file and its notes.
+    """Return the rows of a Parquet file and its notes; `Unreadable` where they do not fit.
 
-    Beside the columns of `schema` the rows have all others of the type `more`, which may have gaps.
-    `Unreadable` when a column of `schema` is not there and not in `absent`, whose columns then hold
-    `None`, or has gaps and is not in `may_lack`.
+    Rows have the columns of `schema`, and all others of the type `more`, which may have gaps. A
+    column of `schema` may only have gaps if it is in `may_lack`, and only be missing if it is in
+    `absent`: it then holds `None`.
     """
     table = read_table(data)
     others = [f.name for f in table.schema if f.type == more and f.name not in schema]

@@ -1,7 +1,7 @@
-"""Data in YAML and JSON, read strictly: what is a number to one reader is text to none.
+"""Strict readers of YAML and JSON, so that no two programs read a file differently.
 
-Numbers are those of JSON, finite and in ASCII. Keys are text, each once. Aliases and tags, which
-let a short file grow without end, are not read.
+Numbers are those of JSON, finite and in ASCII. Keys are text and unique. Aliases and tags, by which
+a short file could grow without end, are refused.
 """
 
 import json
@@ -24,20 +24,20 @@ LONGEST = 1_000_000
 _DEEPEST = 12
 _TOO_DEEP = "is nested too deeply; a file of this kind has few levels"
 _TYPE = "tag:yaml.org,2002:"
-_Safe: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # in C it is four times as fast
+_Safe: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # four times as fast in C
 _Model = TypeVar("_Model", bound=BaseModel)
 _Number = TypeVar("_Number", int, float)
 
 
 class Misread(ValueError):
-    """Why data cannot be read, in words that follow a colon; `line` where that is known."""
+    """Data that cannot be read; the message follows a colon. `line`, where it is known."""
 
     def __init__(self, says: str, line: int | None = None) -> None:
         super().__init__(says)
         self.line = line
 
     def at(self, where: object) -> str:
-        """Return `where`, the line, and what is wrong."""
+        """Return the message with `where`, and the line, in front."""
         return f"{where}: {self}" if self.line is None else f"{where}, line {self.line}: {self}"
 
 
@@ -55,7 +55,7 @@ def text_of(data: bytes) -> str:
 
 
 def read_json(data: bytes) -> Any:
-    """Return what JSON says; `Misread` for anything that is not strictly JSON."""
+    """Return the value in a JSON file; `Misread` for anything that is not strictly JSON."""
 
     def no_number(text: str) -> NoReturn:
         raise Misread(f"holds {text}, which is no number of JSON")
@@ -83,7 +83,7 @@ def read_json(data: bytes) -> Any:
 
 
 def model_of(data: bytes, model: type[_Model]) -> _Model:
-    """Return a model from JSON that faultpath wrote; `Misread` for what is none."""
+    """Return a model from JSON that faultpath wrote; `Misread` where it does not fit."""
     read_json(data)
     try:
         return model.model_validate_json(data)
@@ -95,7 +95,7 @@ def model_of(data: bytes, model: type[_Model]) -> _Model:
 
 @dataclass(frozen=True)
 class Document:
-    """A YAML file that was read."""
+    """Values of a YAML file, and their lines."""
 
     data: Any
     """Values of the types of JSON."""
@@ -115,16 +115,16 @@ class Document:
         return line
 
     def fill(self, model: type[_Model]) -> _Model:
-        """Return the data as a model; `Misread` for what does not fit."""
+        """Return the data as a model; `Misread` where it does not fit."""
         try:
             return model.model_validate_json(json.dumps(self.data), strict=True)
         except ValidationError as error:
             misfit = misfit_of(error, model)
-            raise Misread(str(misfit), self.line(misfit.place)) from None
+            raise Misread(str(misfit), self.line(misfit.location)) from None
 
 
 def read_yaml(data: bytes) -> Document:
-    """Return what a YAML file says; `Misread` for anything that is not plain."""
+    """Return the values in a YAML file; `Misread` for anything that is not plain YAML."""
     if len(data) > LONGEST:
         raise Misread(f"is too long; at most {LONGEST} bytes are read")
     text = text_of(data)
@@ -145,7 +145,7 @@ def read_yaml(data: bytes) -> Document:
 
 
 class _Loader(_Safe):
-    """Knows text, numbers, truth values and nothing else; each key is text, and there once."""
+    """Reads text, numbers and truth values and nothing else; keys are text and unique."""
 
     yaml_implicit_resolvers: ClassVar[dict[str, Any]] = {}
 
@@ -193,7 +193,7 @@ for _name, _pattern, _first in (
 
 
 def _check_events(events: Iterator[Any]) -> None:
-    """Refuse what makes a short file expensive to read, before anything is made of it."""
+    """Refuse what would make a short file expensive, before any value is built."""
     depth = 0
     for event in events:
         line = event.start_mark.line + 1

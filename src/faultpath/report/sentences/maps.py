@@ -7,7 +7,7 @@ from faultpath.analyses.map.model import Flip, MapFacts, MapPoint, MapResult
 from faultpath.core.text import series
 from faultpath.report.sentences.phrases import NO_RESULT, scenes_like_these
 from faultpath.report.sentences.wording import MINUS, interval, signed
-from faultpath.stats.contrast import MIN_SCENES
+from faultpath.stats.power import MIN_SCENES
 
 
 def size_label(facts: MapFacts, size: float) -> str:

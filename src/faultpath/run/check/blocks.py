@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from faultpath.core.error_source import described, place_in
+from faultpath.core.error_source import described, location_in
 from faultpath.core.errors import UserError
 from faultpath.loop import (
     FaultedElsewhere,
@@ -164,7 +164,7 @@ def run_block(system: System, block: BlockSpec) -> RecordedBlock:
                 error, fails = f"{lost.error} in scene {lost.scene!r}", TRIALS
         elif isinstance(result, Raised):
             kind, _, text = result.error.partition(": ")
-            at = place_in(result.traceback)
+            at = location_in(result.traceback)
             error, fails = f"{result.error} ({at})" if at else result.error, TRIALS
             for scene in scenes if block.tap == ("", "") else ():
                 if not scenes[1:] or isinstance(attempt(system, block.treatment, (scene,)), Raised):

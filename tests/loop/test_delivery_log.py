@@ -1,4 +1,4 @@
-"""Receipts: what was delivered, where a fault acted, and what is an error."""
+"""The delivery log: what was delivered, where a fault acted, and what is an error."""
 
 import re
 from dataclasses import replace
@@ -11,7 +11,6 @@ from tap_toys import make
 
 from faultpath.faults import Fault, Scale
 from faultpath.loop import FaultedElsewhere, NotDelivered, Reading, Taps
-from faultpath.loop.receipts import check_delivered
 
 DOUBLE = Fault(channel="mass", intervention=Scale(factor=2.0))
 LATE = DOUBLE.model_copy(update={"onset_step": 3, "duration_steps": 2}).aimed_at("observer")
@@ -28,15 +27,15 @@ def run(taps: Taps, to: Any = np.asarray, steps: Any = range(6), zero: int = -1)
 def test_counts_deliveries_and_steps(to: Any) -> None:
     taps = make([LATE])
     run(taps, to, range(2, 6))
-    faulted = taps.receipts().at("mass", "observer.model")
+    faulted = taps.delivery_log().at("mass", "observer.model")
     assert faulted.deliveries == 4
     assert faulted.steps_faulted.tolist() == [2, 2]
     assert faulted.steps_altered.tolist() == [2, 2]
-    (corruption,) = faulted.corruptions
-    assert corruption.fault == "mass scaled by 2 at observer.model from step 3 for 2 steps"
-    clean = taps.receipts().at("mass", "predictor.dynamics")
-    assert (clean.deliveries, clean.corruptions, clean.steps_faulted.tolist()) == (4, (), [0, 0])
-    silent = taps.receipts().at("wind", "planner.wind")
+    (fault,) = faulted.faults
+    assert fault.fault == "mass scaled by 2 at observer.model from step 3 for 2 steps"
+    clean = taps.delivery_log().at("mass", "predictor.dynamics")
+    assert (clean.deliveries, clean.faults, clean.steps_faulted.tolist()) == (4, (), [0, 0])
+    silent = taps.delivery_log().at("wind", "planner.wind")
     assert silent.deliveries == 0
 
 
@@ -44,9 +43,9 @@ def test_counts_deliveries_and_steps(to: Any) -> None:
 def test_faulted_is_not_yet_altered(to: Any) -> None:
     taps = make([LATE.model_copy(update={"onset_step": 1})])
     run(taps, to, zero=2)
-    receipt = taps.receipts().at("mass", "observer.model")
-    assert receipt.steps_faulted.tolist() == [2, 2]
-    assert receipt.steps_altered.tolist() == [1, 1]
+    tap = taps.delivery_log().at("mass", "observer.model")
+    assert tap.steps_faulted.tolist() == [2, 2]
+    assert tap.steps_altered.tolist() == [1, 1]
 
 
 @LIBRARIES
@@ -55,7 +54,7 @@ def test_a_nan_that_stays_is_not_altered(to: Any) -> None:
     for step, lost in enumerate((0.0, np.nan)):
         reading = Reading(to(np.array([lost, 1.0])), "scale", step)
         taps.deliver("mass", "observer.model", reading, step)
-    assert taps.receipts().steps_altered.tolist() == [0, 2]
+    assert taps.delivery_log().steps_altered.tolist() == [0, 2]
 
 
 @LIBRARIES
@@ -67,24 +66,24 @@ def test_only_running_scenes_count(to: Any, mask_to: Any) -> None:
     run(taps, to, range(3, 5))
     taps.set_active(None)
     run(taps, to, range(5, 6))
-    assert taps.receipts().steps_faulted.tolist() == [5, 3]
-    assert taps.receipts().steps_altered.tolist() == [5, 3]
+    assert taps.delivery_log().steps_faulted.tolist() == [5, 3]
+    assert taps.delivery_log().steps_altered.tolist() == [5, 3]
 
 
 @LIBRARIES
 def test_a_step_counts_once_for_the_run_however_many_taps_are_faulted(to: Any) -> None:
     taps = make([LATE.aimed_at("*")])
     run(taps, to)
-    assert taps.receipts().steps_faulted.tolist() == [2, 2]
+    assert taps.delivery_log().steps_faulted.tolist() == [2, 2]
 
 
 def test_two_faults_at_a_tap_are_told_apart() -> None:
     early = LATE.model_copy(update={"onset_step": 0, "duration_steps": 4})
     taps = make([early, LATE])
     run(taps)
-    receipt = taps.receipts().at("mass", "observer.model")
-    assert [s.steps_in_force.tolist() for s in receipt.corruptions] == [[4, 4], [2, 2]]
-    assert receipt.steps_faulted.tolist() == [5, 5]
+    tap = taps.delivery_log().at("mass", "observer.model")
+    assert [s.steps_in_force.tolist() for s in tap.faults] == [[4, 4], [2, 2]]
+    assert tap.steps_faulted.tolist() == [5, 5]
 
 
 @pytest.mark.parametrize(
@@ -116,23 +115,21 @@ def test_one_of_two_faults_that_never_came_to_bear_is_an_error() -> None:
 def test_a_fault_that_reached_another_is_an_error() -> None:
     taps = make([LATE])
     run(taps)
-    receipts = taps.receipts()
+    log = taps.delivery_log()
     last = np.array([5, 5])
     with pytest.raises(FaultedElsewhere, match=re.escape("tap mass -> observer.model altered a")):
-        check_delivered(receipts, {}, last)
-    named = {
-        ("mass", "observer.model"): [receipts.at("mass", "observer.model").corruptions[0].fault]
-    }
-    check_delivered(receipts, named, last)
+        log.check({}, last)
+    named = {("mass", "observer.model"): [log.at("mass", "observer.model").faults[0].fault]}
+    log.check(named, last)
     early = LATE.model_copy(update={"onset_step": 0})
     both = make([early, LATE])
     run(both)
     with pytest.raises(FaultedElsewhere, match=re.escape("tap mass -> observer.model altered a")):
-        check_delivered(both.receipts(), named, last)
+        both.delivery_log().check(named, last)
     once = {"mass": {}, "wind": {"steps_altered": np.array([1, 0])}}
-    strange = tuple(replace(receipt, **once[receipt.channel]) for receipt in receipts.taps)
+    strange = tuple(replace(tap, **once[tap.channel]) for tap in log.taps)
     with pytest.raises(FaultedElsewhere, match=re.escape("tap wind -> predictor.wind altered a")):
-        check_delivered(replace(receipts, taps=strange), named, last)
+        replace(log, taps=strange).check(named, last)
 
 
 @pytest.mark.parametrize(

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from faultpath_paper.quantities.window_quantiles import WindowQuantiles
 
 from faultpath.core.streams import generator
 from faultpath.stats.contrast import change
-from faultpath.stats.effects import WindowQuantiles
 
 FEW = {"n_resamples": 400}
 
