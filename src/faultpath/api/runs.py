@@ -1,5 +1,6 @@
 """Finished runs as a program and a notebook use them, read as data: nothing they name is run."""
 
+from abc import ABC, abstractmethod
 from importlib.metadata import entry_points
 from os import PathLike
 from pathlib import Path
@@ -34,7 +35,7 @@ from faultpath.run.store.folder import AGAIN, unseal
 from faultpath.run.store.tables import encode_outcomes
 
 
-class FinishedRun:
+class FinishedRun(ABC):
     """A finished run: its result, how it was made, and where its files are."""
 
     def __init__(self, folder: Path, record: Any, provenance: RunProvenance) -> None:
@@ -42,6 +43,19 @@ class FinishedRun:
         self.record = record
         self.provenance = provenance
         """Record of what ran, on what, with which code, packages and options."""
+
+    @property
+    @abstractmethod
+    def headline(self) -> str:
+        """The result in one sentence."""
+
+    def __repr__(self) -> str:
+        """Return kind, folder and headline."""
+        return f"<{type(self).__name__} in {self.folder}: {self.headline}>"
+
+
+class AnalysedRun(FinishedRun):
+    """A finished audit, map or scan."""
 
     @property
     def words(self) -> Words:
@@ -54,12 +68,13 @@ class FinishedRun:
         """The result in one sentence."""
         return self.words.headline
 
-    def __repr__(self) -> str:
-        """Return kind, folder and headline."""
-        return f"<{type(self).__name__} in {self.folder}: {self.headline}>"
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """All that it says, a sentence or two each."""
+        return self.words.sentences
 
 
-class Run(FinishedRun):
+class Run(AnalysedRun):
     """A finished audit: its result, from which trials, and where its files are.
 
     A notebook shows it as the table of its effects, with the result in words below.
@@ -72,11 +87,6 @@ class Run(FinishedRun):
         super().__init__(folder, source.record, source.provenance)
         self.held = source
         """All that its pages are made from."""
-
-    @property
-    def sentences(self) -> tuple[str, ...]:
-        """Answers: what follows, how sure it is and what stays open, a sentence or two each."""
-        return self.words.sentences
 
     @property
     def failed(self) -> int:
@@ -119,7 +129,7 @@ class Run(FinishedRun):
         return markdown_table(self.record)
 
 
-class MapRun(FinishedRun):
+class MapRun(AnalysedRun):
     """A finished reversal map: its result, and where its files are."""
 
     record: MapResult
@@ -131,7 +141,7 @@ class MapRun(FinishedRun):
         return write_map(self.record, self.provenance, place)
 
 
-class ScanRun(FinishedRun):
+class ScanRun(AnalysedRun):
     """A finished scan: its result, and where its files are."""
 
     record: ScanResult
