@@ -46,8 +46,7 @@ def test_all_figures_are_xml(one_seed: ReportInput) -> None:
 
 def _forest(record: AuditResult, **changes: object) -> str:
     effect = record.effects[0].model_copy(update=changes)
-    rows = [("Correct inputs", "", effect)]
-    return panel("All", rows, shared_axis([rows]))
+    return panel("All", [("Correct inputs", "", effect)], shared_axis([effect]))
 
 
 def test_only_what_is_decided_is_bold_and_filled(one_seed: ReportInput) -> None:

@@ -7,7 +7,7 @@ from pathlib import PurePath
 from faultpath.analyses.analysis import Analysis, Round, Rounds
 from faultpath.analyses.decide import decide, primary_condition
 from faultpath.analyses.facts import ComparisonFacts, SceneOrder, facts_of, question_of
-from faultpath.analyses.model import CORRECT, SHARED, AuditResult, Condition, FaultedTap
+from faultpath.analyses.model import AuditResult, Condition, FaultedTap, title_of
 from faultpath.analyses.planning import (
     ORDER_SEED,
     faults_by_condition,
@@ -143,13 +143,13 @@ def audit_analysis(
 
 def _condition(name: str, repair: Sequence[Fault], baseline: Sequence[Fault]) -> Condition:
     """Return a condition of the fault, with what it reaches in each variant."""
-    titles = {CORRECT: "Correct inputs", SHARED: "Shared fault"}
     readers, baseline_readers = (
         tuple(dict.fromkeys(reader for fault in faults for reader in fault.readers))
         for faults in (repair, baseline)
     )
-    title = titles.get(name, f"{name.replace('_', ' ').capitalize()} only")
-    return Condition(name=name, title=title, readers=readers, baseline_readers=baseline_readers)
+    return Condition(
+        name=name, title=title_of(name), readers=readers, baseline_readers=baseline_readers
+    )
 
 
 def _check(system: System, question: AuditQuestion) -> None:

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from faultpath.analyses.decide import primary_condition
 from faultpath.analyses.facts import ComparisonFacts
 from faultpath.analyses.judging_table import Address, Key, table_of, units_of
-from faultpath.analyses.model import AS_RUN, CORRECT, SHARED, Condition, where
+from faultpath.analyses.model import AS_RUN, CORRECT, SHARED, Condition, title_of, where
 from faultpath.core.errors import UserError
-from faultpath.core.text import capital, listed, unknown
+from faultpath.core.text import listed, unknown
 from faultpath.run import Trials
 from faultpath.run.deliveries import unproven
 from faultpath.run.findings import ExtraTrials, Finding, MissingTrials, NoneFailed, SeveralTasks
@@ -61,7 +61,10 @@ def pair_results(rows: Sequence[Received], request: JudgeQuestion) -> PairedResu
     hashed = _hashed(rows)
     trials, missing = table_of(received, ordered, units, request, hashed)
     keys = {unit: sorted(members) for unit, members in units.labels.items()}
-    conditions = tuple(_condition(name) for name in ordered)
+    conditions = tuple(
+        Condition(name=name, title=title_of(name), readers=(), baseline_readers=())
+        for name in ordered
+    )
     crashed = any(row.status is Status.CRASH for row in rows)
     facts = ComparisonFacts(
         system="results of other tools",
@@ -174,12 +177,6 @@ def _hashed(rows: Sequence[Received]) -> bool:
             "the column, or take it out."
         )
     return bool(ended) and not bare
-
-
-def _condition(name: str) -> Condition:
-    titles = {CORRECT: "Correct inputs", SHARED: "Shared fault", AS_RUN: "The results"}
-    title = titles.get(name, f"{capital(name.replace('_', ' '))} only")
-    return Condition(name=name, title=title, readers=(), baseline_readers=())
 
 
 def _metrics(question: JudgeQuestion) -> dict[str, Metric]:

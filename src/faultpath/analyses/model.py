@@ -6,6 +6,7 @@ from typing import Literal
 from faultpath.analyses.effects import Change, Effect, Secondary
 from faultpath.analyses.facts import ComparisonFacts, EarlierAnalysis, Question
 from faultpath.core.results import Result
+from faultpath.core.text import capital
 from faultpath.run.findings import Finding, Recheck, Unpaired, Unrepeated
 from faultpath.stats.estimate import BreakEven
 
@@ -28,6 +29,12 @@ def where(condition: str) -> str:
         if condition == SHARED
         else f"with the fault at the {condition} alone"
     )
+
+
+def title_of(condition: str) -> str:
+    """Return the title of a condition."""
+    titles = {CORRECT: "Correct inputs", SHARED: "Shared fault", AS_RUN: "The results"}
+    return titles.get(condition, f"{capital(condition.replace('_', ' '))} only")
 
 
 def invalid_by(findings: Sequence[Finding]) -> Invalid | None:

@@ -1,5 +1,6 @@
 """Finished runs as a program and a notebook use them, read as data: nothing they name is run."""
 
+from abc import ABC, abstractmethod
 from importlib.metadata import entry_points
 from os import PathLike
 from pathlib import Path
@@ -32,7 +33,7 @@ from faultpath.run.store.folder import AGAIN, unseal
 from faultpath.run.store.tables import encode_outcomes
 
 
-class FinishedRun:
+class FinishedRun(ABC):
     """A finished run: its result, how it was made, and where its files are."""
 
     files: ClassVar[tuple[str, ...]] = MADE_FROM
@@ -45,6 +46,19 @@ class FinishedRun:
         """Record of what ran, on what, with which code, packages and options."""
 
     @property
+    @abstractmethod
+    def headline(self) -> str:
+        """The result in one sentence."""
+
+    def __repr__(self) -> str:
+        """Return kind, folder and headline."""
+        return f"<{type(self).__name__} in {self.folder}: {self.headline}>"
+
+
+class AnalysedRun(FinishedRun):
+    """A finished audit, map or scan."""
+
+    @property
     def words(self) -> Words:
         """The result in words: `headline`, `sentences`, `findings`, `would_change` of an audit and
         `commands` of a scan."""
@@ -55,12 +69,13 @@ class FinishedRun:
         """The result in one sentence."""
         return self.words.headline
 
-    def __repr__(self) -> str:
-        """Return kind, folder and headline."""
-        return f"<{type(self).__name__} in {self.folder}: {self.headline}>"
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """All that it says, a sentence or two each."""
+        return self.words.sentences
 
 
-class Run(FinishedRun):
+class Run(AnalysedRun):
     """A finished audit: its result, from which trials, and where its files are.
 
     A notebook shows it as the table of its effects, with the result in words below.
@@ -73,11 +88,6 @@ class Run(FinishedRun):
         super().__init__(folder, source.record, source.provenance)
         self.inputs = source
         """All that its pages are made from."""
-
-    @property
-    def sentences(self) -> tuple[str, ...]:
-        """Answers: what follows, how sure it is and what stays open, a sentence or two each."""
-        return self.words.sentences
 
     @property
     def failed(self) -> int:
@@ -120,7 +130,7 @@ class Run(FinishedRun):
         return markdown_table(self.record)
 
 
-class MapRun(FinishedRun):
+class MapRun(AnalysedRun):
     """A finished reversal map: its result, and where its files are."""
 
     files = MAP_MADE_FROM
@@ -133,7 +143,7 @@ class MapRun(FinishedRun):
         return write_map(self.record, self.provenance, place)
 
 
-class ScanRun(FinishedRun):
+class ScanRun(AnalysedRun):
     """A finished scan: its result, and where its files are."""
 
     files = SCAN_MADE_FROM

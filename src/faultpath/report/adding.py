@@ -1,6 +1,6 @@
 """How the errors of two modules add up in one scene, in words and as a picture."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,6 +31,7 @@ class Lines:
 
     role: str
     name: str
+    terms: Sequence[Signal]
     values: NDArray[np.float64]
     """`[3, T]`: the errors and their sum, a number a control step, not a number where unknown."""
     trial: Outcome
@@ -81,41 +82,39 @@ def adding(source: ReportInput, pairs: Sequence[Pair]) -> Adding | None:
     return None
 
 
+def _lines(source: ReportInput, pair: Pair) -> Iterator[Lines]:
+    """Yield the lines of the baseline and of the repair, where both errors are known."""
+    facts, question = source.record.facts, source.record.question
+    for role, name, trial in (
+        ("baseline", question.baseline, pair.baseline),
+        ("repair", question.repair, pair.repair),
+    ):
+        named = source.signals.get(TrialAddress(name, pair.condition, pair.seed, pair.scene), ())
+        topics = [signal.topic for signal in named if signal.name == TOGETHER]
+        terms = [signal for signal in named if signal.topic in topics]
+        numbers = all(np.isfinite(signal.values).any() for signal in terms)
+        if trial and numbers and len(terms) == 3 and terms[-1].name == TOGETHER:
+            values = np.array([signal.values[:, 0] for signal in terms], np.float64)
+            ended = f"{wording.ended(facts, trial.status)}, {trial.time_s:.1f} s"
+            yield Lines(role, name, terms, values, trial, ended)
+
+
 def _of(source: ReportInput, scene: str, pairs: Mapping[str, Pair]) -> Adding | None:
-    question = source.record.question
-    conditions: list[tuple[str, str, tuple[Lines, ...]]] = []
-    terms: list[Signal] = []
-    for condition in source.record.conditions:
-        if condition.name == CORRECT or condition.name not in pairs:
-            continue
-        pair, lines = pairs[condition.name], list[Lines]()
-        for role, name, trial in (
-            ("baseline", question.baseline, pair.baseline),
-            ("repair", question.repair, pair.repair),
-        ):
-            named = source.signals.get(TrialAddress(name, condition.name, pair.seed, scene), ())
-            topics = [signal.topic for signal in named if signal.name == TOGETHER]
-            known = [signal for signal in named if signal.topic in topics]
-            numbers = all(np.isfinite(signal.values).any() for signal in known)
-            if trial and numbers and len(known) == 3 and known[-1].name == TOGETHER:
-                terms = known
-                values = np.array([signal.values[:, 0] for signal in known], np.float64)
-                ended = f"{wording.ended(source.record.facts, trial.status)}, {trial.time_s:.1f} s"
-                lines.append(Lines(role, name, values, trial, ended))
+    titles, conditions = source.record.titles, dict[str, tuple[Lines, ...]]()
+    for name in titles:
+        lines = tuple(_lines(source, pairs[name])) if name != CORRECT and name in pairs else ()
         if len(lines) == 2:
-            conditions.append((condition.name, condition.title, tuple(lines)))
+            conditions[name] = lines
     if not conditions:
         return None
-    every = np.concatenate(
-        [variant.values.ravel() for *_, variants in conditions for variant in variants]
-    )
+    every = np.concatenate([line.values.ravel() for of in conditions.values() for line in of])
     every = every[np.isfinite(every)]
     low, high = (float(end) for end in np.quantile(every, (0.03, 0.97)))
     whole = float(every.min()), float(every.max())
     cut = whole[1] - whole[0] > _SQUEEZED * max(high - low, 1e-9)
-    unit = wording.unit(terms[0].unit)
-    largest = max(whole, key=abs)
-    last, _, variants = conditions[-1]
+    last, variants = list(conditions.items())[-1]
+    terms = variants[-1].terms
+    unit, largest = wording.unit(terms[0].unit), max(whole, key=abs)
     digits = 2 if min(max(variant.sizes) for variant in variants) < 1 else 1
     descriptions: list[str] = []
     for variant in variants:
@@ -128,7 +127,7 @@ def _of(source: ReportInput, scene: str, pairs: Mapping[str, Pair]) -> Adding | 
         unit=unit,
         names=tuple(term.name for term in terms),
         conditions=tuple(
-            (title, variants) for _, title, variants in conditions[-_MOST_CONDITIONS:]
+            (titles[name], lines) for name, lines in list(conditions.items())[-_MOST_CONDITIONS:]
         ),
         caption=f"Scene {scene}, {where(last)}, mean sizes: {'; '.join(descriptions)}.",
         span=(low, high) if cut else whole,

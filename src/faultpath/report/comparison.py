@@ -200,7 +200,8 @@ def page(runs: Sequence[Compared]) -> str:
         ]
         for condition, title in titles(runs).items()
     }
-    axis = shared_axis(list(panels.values()))
+    effects_of = (run.effect(condition) for run in runs for condition in titles(runs))
+    axis = shared_axis(effect for effect in effects_of if effect)
     return render(
         "comparison.html.j2",
         headline=headline(runs),

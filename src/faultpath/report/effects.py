@@ -1,6 +1,6 @@
 """Effects with their intervals, condition by condition, and over the frequency of the fault."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from faultpath.analyses.effects import Effect
@@ -40,7 +40,7 @@ class EffectRow:
 
 def effect_rows(record: AuditResult) -> list[EffectRow]:
     """Return a row for every condition, all pictures on one axis."""
-    plot = _axis_of(record).at(6, _WIDE - 6)
+    plot = shared_axis(record.effects).at(6, _WIDE - 6)
     rows: list[EffectRow] = []
     for condition in record.conditions:
         primary = "primary" if condition.name == record.facts.primary else ""
@@ -71,25 +71,20 @@ def effect_rows(record: AuditResult) -> list[EffectRow]:
 
 def effect_axis(record: AuditResult) -> str:
     """Return the axis below the pictures of `effect_rows`, with whose side is which."""
-    plot = _axis_of(record).at(6, _WIDE - 6)
+    plot = shared_axis(record.effects).at(6, _WIDE - 6)
     svg = Svg(_WIDE, 38, "Success of the repair minus success of the baseline, percentage points")
     _tick_labels(svg, plot, 12)
     _sides(svg, plot, 32)
     return svg.render()
 
 
-def _axis_of(record: AuditResult) -> Axis:
-    return shared_axis([[("", "", effect) for effect in record.effects]])
-
-
-def shared_axis(panels: Sequence[Sequence[Row]]) -> Axis:
-    """Return the axis that all panels have in common, percentage points."""
+def shared_axis(effects: Iterable[Effect]) -> Axis:
+    """Return the axis that the pictures of effects have in common, percentage points."""
     ends: list[float] = []
-    for *_, effect in (row for rows in panels for row in rows):
-        if not isinstance(effect, str):
-            e, band = effect, _band(effect)
-            ends += [v for v in (e.value, e.low, e.high, *e.per_seed) if v is not None]
-            ends += [-band, band] if band else []
+    for e in effects:
+        band = _band(e)
+        ends += [v for v in (e.value, e.low, e.high, *e.per_seed) if v is not None]
+        ends += [-band, band] if band else []
     return covering(ends, least=10.0)
 
 

@@ -46,7 +46,7 @@ def _answers(record: AuditResult) -> dict[str, list[str]]:
     least = record.testing.scenes_needed
     if record.invalid:
         return {"Left open": [_WHY_NO_RESULT[record.invalid]]}
-    sure = [*reach(record), *_hardly_acted(record)]
+    sure = [*_reach(record), *_hardly_acted(record)]
     if record.few:
         few = (
             f"Too few scenes: {counted(record.scenes, 'scene')} compared, and no difference can be "
@@ -121,7 +121,7 @@ def _unknown(record: AuditResult) -> str:
     return f"{text}: {where(main.condition)}, any difference from {low} to {high} pp is possible."
 
 
-def reach(record: AuditResult) -> Iterator[str]:
+def _reach(record: AuditResult) -> Iterator[str]:
     """Say how far the numbers reach, which seeds repeat, and how a sequential audit stopped."""
     question, facts = record.question, record.facts
     holds = "The intervals hold" if record.few else "What is significant holds"

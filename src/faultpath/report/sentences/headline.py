@@ -45,6 +45,7 @@ def headline(record: AuditResult) -> str:
         text = _reversal(record, main, turned)
     else:
         text = _ranking(record, main, [effect for effect in tested if effect is not main])
+    # How few scenes differ qualifies who is ahead, and nothing else that a headline says.
     return f"{text[:-1]}{_few_scenes(record)}." if " is ahead" in text else text
 
 
@@ -101,7 +102,7 @@ def _ranking(record: AuditResult, main: Effect, others: Sequence[Effect]) -> str
     alike.sort(key=lambda effect: effect.condition != SHARED)
     ahead = [effect for effect in others if effect.leads and effect not in alike]
     shared = [effect for effect in others if effect.condition == SHARED]
-    if len(alike) + 1 == len(record.effects) > 1:
+    if len(alike) + 1 == len(record.effects) > 1:  # the same everywhere
         place = "under every condition" if main.leads else "under any condition"
         return _sentence(record, [main], place=place)
     if shared and shared[0] not in alike:
@@ -109,6 +110,7 @@ def _ranking(record: AuditResult, main: Effect, others: Sequence[Effect]) -> str
     if not ahead:
         named = alike if len(alike) < 3 else shared
         return _sentence(record, [main, *named], both=len(named) < 2)
+    # Only so many places fit into the words that a headline may have.
     named = [main, *shared]
     count = len(named) + len(ahead)
     most = 3 if main.leads or main.extreme or state == _OPEN else 2
