@@ -160,16 +160,16 @@ class Controller(Module):
 
 def gain_error(trial):
     """Return by how much the controller misjudges what its push does, m/s^2."""
-    wrong = trial.got("gain", "controller.inverse") - trial.held("gain_estimate")
-    return wrong * trial.held("command")
+    wrong = trial.delivered("gain", "controller.inverse") - trial.source("gain_estimate")
+    return wrong * trial.source("command")
 
 
 def slope_error(trial):
     """Return by how much the slope that it is given is wrong, m/s^2."""
-    speed, push = trial.held("speedometer"), trial.held("command")
+    speed, push = trial.source("speedometer"), trial.source("command")
     moved = np.diff(speed, axis=0, append=np.nan) / DT_S
-    return trial.got("slope", "controller.feedforward") - (
-        moved - trial.held("gain_estimate") * push
+    return trial.delivered("slope", "controller.feedforward") - (
+        moved - trial.source("gain_estimate") * push
     )
 
 

@@ -31,7 +31,7 @@ def quadrotor_signals(
     predictions = _predicted(recording)
     by_trial: list[tuple[Signal, ...]] = []
     for trial in trials(recording, done, system.control_dt_s):
-        thrust = trial.got("action", "vehicle.actuators")[:, :1].astype(np.float32)
+        thrust = trial.delivered("action", "vehicle.actuators")[:, :1].astype(np.float32)
         signals = [Signal("commanded thrust", "commanded thrust", "N", thrust), *_errors(trial)]
         for horizon, positions in predictions.items():
             name = f"position predicted {horizon * system.control_dt_s:g} s before"
@@ -43,9 +43,9 @@ def quadrotor_signals(
 
 def _errors(trial: RecordedTrial) -> list[Signal]:
     def delivered(channel: str, place: str) -> Values:
-        return trial.got(channel, f"predictor.{place}")
+        return trial.delivered(channel, f"predictor.{place}")
 
-    true, reads = trial.held, trial.recording.got.keys()
+    true, reads = trial.source, trial.recording.got.keys()
     if not {("mass", "predictor.dynamics"), ("mass", "predictor.wind_map")} <= reads:
         return []
     drag = LinearDrag(PLATFORM.drag_kgps)

@@ -44,7 +44,7 @@ def _briefly(names: tuple[str, ...]) -> str | list[str]:
     return names[0] if len(names) == 1 else list(names)
 
 
-Made = Annotated[
+SourceNames = Annotated[
     tuple[Name, ...],
     Field(min_length=1),
     BeforeValidator(_several, json_schema_input_type=Name | tuple[Name, ...]),

@@ -15,7 +15,7 @@ from faultpath.core.arrays import misfit
 from faultpath.core.errors import UserError
 from faultpath.core.results import Frozen
 from faultpath.core.text import listed, unknown
-from faultpath.interface.declaration import Channel, Made, Name, Source
+from faultpath.interface.declaration import Channel, Name, Source, SourceNames
 
 Where = tuple[str | int, ...]
 
@@ -30,7 +30,7 @@ class Interface(Frozen, allow_inf_nan=False):
     name: Name
     sources: tuple[Source, ...]
     channels: tuple[Channel, ...]
-    reconstructs: dict[Name, Made] = Field(default_factory=dict[str, tuple[str, ...]])
+    reconstructs: dict[Name, SourceNames] = Field(default_factory=dict[str, tuple[str, ...]])
     """Module to the sources that it produces; a file may give a single one without a list."""
 
     @property

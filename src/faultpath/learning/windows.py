@@ -17,9 +17,9 @@ from faultpath.learning.model_card import Data
 from faultpath.learning.repair import Repair
 from faultpath.loop import Port, Reading, TapCount, Taps
 
-_EPOCHS = 100_000
+_SEED_STRIDE = 100_000
 """Distance between the seeds of the faults' random numbers for two adjacent seeds of a fit."""
-VALIDATION = _EPOCHS - 1
+VALIDATION = _SEED_STRIDE - 1
 """Epoch whose errors validation uses."""
 
 Targets = HostArray | Mapping[str, HostArray]
@@ -242,7 +242,7 @@ def window_taps(
         faults,
         scenes=ids,
         dt_s=dt_s,
-        seed=_EPOCHS * seed + epoch,
+        seed=_SEED_STRIDE * seed + epoch,
         readers=readers,
         privileged={s.name for s in interface.sources if s.provenance is Provenance.PRIVILEGED},
     )

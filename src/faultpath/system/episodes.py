@@ -13,7 +13,7 @@ from faultpath.core.errors import SystemMistake
 from faultpath.core.text import unknown
 from faultpath.loop import Batch, Inputs, Plant, Port, Progress
 from faultpath.system.arguments import check_episode
-from faultpath.system.observed import Look, look
+from faultpath.system.observed import Selector, select
 from faultpath.system.outcome import Metric
 
 SCENE = "seed/"
@@ -128,7 +128,7 @@ class EpisodePlant(Plant):
     def __init__(
         self,
         *,
-        observes: Mapping[str, Look],
+        observes: Mapping[str, Selector],
         action: str,
         steps: int,
         dt_s: float,
@@ -158,7 +158,7 @@ class EpisodePlant(Plant):
         self, worlds: Sequence[SceneInstance], observations: Sequence[Any]
     ) -> dict[str, HostArray]:
         """Return the values of all sources, `[B, ...]`, for these observations."""
-        sources = look(self._observes, observations, self.observed)
+        sources = select(self._observes, observations, self.observed)
         for name in self.facts:
             sources[name] = np.array([np.asarray(world.facts[name]) for world in worlds])
         return sources

@@ -9,7 +9,7 @@ from typing_extensions import override
 from faultpath.core.arrays import HostArray
 from faultpath.core.errors import SystemMistake
 from faultpath.core.streams import generator
-from faultpath.system.episodes import Episode, EpisodePlant, Look, Measure, SceneInstance, Show
+from faultpath.system.episodes import Episode, EpisodePlant, Measure, SceneInstance, Selector, Show
 from faultpath.system.observed import hashed
 
 
@@ -38,7 +38,7 @@ class FunctionPlant(EpisodePlant):
         start: Callable[[np.random.Generator], Any],
         step: Callable[[Any, HostArray, np.random.Generator], Any],
         *,
-        observes: Mapping[str, Look],
+        observes: Mapping[str, Selector],
         action: str,
         steps: int,
         dt_s: float,

@@ -22,9 +22,9 @@ from faultpath.system.episodes import (
     SCENE,
     Episode,
     EpisodePlant,
-    Look,
     Measure,
     SceneInstance,
+    Selector,
     Show,
 )
 from faultpath.system.observed import hashed
@@ -64,7 +64,7 @@ class GymnasiumPlant(EpisodePlant):
         self,
         environment: str | Callable[[], Any],
         *,
-        observes: Mapping[str, Look],
+        observes: Mapping[str, Selector],
         action: str,
         succeeded: Callable[[Episode], bool],
         metrics: Mapping[str, Measure] | None = None,

@@ -13,7 +13,7 @@ from faultpath.core.error_source import described, location, ours
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import near, unknown
 from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
-from faultpath.system.tapping import Made
+from faultpath.system.tapping import SceneObjects
 
 MEMORY = "memory"
 """Name of the argument that is not a channel."""
@@ -108,10 +108,10 @@ class FunctionModule(Module):
         self.reads = frozenset(read - self.reads_past) | self.at_read
         self._handed_over = tuple(sorted(read))
 
-    def _make(self, row: Mapping[str, Any]) -> Made:
+    def _make(self, row: Mapping[str, Any]) -> SceneObjects:
         """Return the objects of a scene, made from its readings and values."""
         of = cast("Callable[..., Any]", self._of)
-        return Made(partial(of, **{name: row[name] for name in self._made_of}))
+        return SceneObjects(partial(of, **{name: row[name] for name in self._made_of}))
 
     def given(self, **values: Any) -> "FunctionModule":
         """Return the module with values for some arguments, which it then no longer reads.
@@ -163,7 +163,7 @@ class FunctionModule(Module):
     def begin(self, batch: Batch) -> Memory:
         return [None] * len(batch.scenes) if self._of else None
 
-    def _step_scene(self, inputs: Inputs, i: int, scene: Made | None) -> Made:
+    def _step_scene(self, inputs: Inputs, i: int, scene: SceneObjects | None) -> SceneObjects:
         """Make a step with the objects of one scene, which are made at the first."""
         rows = {port.channel: inputs[port][i] for port in self._handed_over} | self._values
         if scene is None:
@@ -185,7 +185,7 @@ class FunctionModule(Module):
                 self._step_scene(inputs, i, scene)
                 if inputs.running is None or inputs.running[i]
                 else scene
-                for i, scene in enumerate(cast("list[Made]", memory))
+                for i, scene in enumerate(cast("list[SceneObjects]", memory))
             ]
             return {self.writes[0]: np.stack([scene.last for scene in memory])}, memory
         rows = {port.channel: inputs[port] for port in self._handed_over}

@@ -16,13 +16,13 @@ _LOCATION = re.compile(r"faultpath_system_\w+\.| at 0x[0-9a-f]+")
 """The module of a system, named after the path of its file, and an object's address in memory."""
 
 
-Look = str | int | slice | tuple[Any, ...] | Callable[[Any], Any]
+Selector = str | int | slice | tuple[Any, ...] | Callable[[Any], Any]
 """A source's part of the observation: a key, an index or slice, several in turn, or a function of
 the batch's observation that returns an array `[B, ...]`."""
 
 
-def look(
-    observes: Mapping[str, Look], observations: Sequence[Any], observed: str
+def select(
+    observes: Mapping[str, Selector], observations: Sequence[Any], observed: str
 ) -> dict[str, HostArray]:
     """Return the values of all sources, `[B, ...]`, from observations of single scenes.
 

@@ -28,11 +28,11 @@ class TrialReadings(Protocol):
     `KeyError` for a source or reader that the variant does not have.
     """
 
-    def held(self, source: str) -> Values:
+    def source(self, name: str) -> Values:
         """Return the values of a source."""
         ...
 
-    def got(self, channel: str, reader: str) -> Values:
+    def delivered(self, channel: str, reader: str) -> Values:
         """Return the values that a tap delivered, faults included."""
         ...
 

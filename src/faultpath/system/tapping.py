@@ -16,7 +16,7 @@ from faultpath.system.sharing import Walk
 
 T = TypeVar("T")
 
-_MADE: ContextVar[list["Reads"] | None] = ContextVar("_MADE", default=None)
+_STAND_INS: ContextVar[list["Reads"] | None] = ContextVar("_STAND_INS", default=None)
 """Collects the stand-ins of the objects under construction."""
 
 
@@ -144,7 +144,7 @@ def tapped(what: T, *names: str, at: str, **channels: str) -> T:
 
 
 def _collected(reads: Reads, stand_in: Any) -> Any:
-    if (collected := _MADE.get()) is not None:
+    if (collected := _STAND_INS.get()) is not None:
         collected.append(reads)
     return stand_in
 
@@ -207,16 +207,16 @@ def _delivered(reads: Reads, name: str) -> property:
     return property(lambda _: reads.read(name), write)
 
 
-class Made:
+class SceneObjects:
     """The objects of one scene."""
 
     def __init__(self, make: Callable[[], Any]) -> None:
         collected: list[Reads] = []
-        token = _MADE.set(collected)
+        token = _STAND_INS.set(collected)
         try:
             self.objects = make()
         finally:
-            _MADE.reset(token)
+            _STAND_INS.reset(token)
         self.reads = tuple(collected)
         self.last: Any = None
         """Latest value of the module in this scene."""

@@ -102,11 +102,11 @@ class RecordedTrial(TrialReadings):
     steps: int
 
     @override
-    def held(self, source: str) -> Values:
-        return self.rows(self.recording.sources[source])
+    def source(self, name: str) -> Values:
+        return self.rows(self.recording.sources[name])
 
     @override
-    def got(self, channel: str, reader: str) -> Values:
+    def delivered(self, channel: str, reader: str) -> Values:
         return self.rows(self.recording.got[channel, reader])
 
     def rows(self, by_step: Mapping[int, Values]) -> Values:
