@@ -1,5 +1,6 @@
 """Shipped parts by name, with their trained weights."""
 
+from collections.abc import Mapping
 from functools import lru_cache
 
 import torch
@@ -8,9 +9,19 @@ from torch import nn
 from faultpath.plugin.system import UserError
 from faultpath.plugin.training import fill
 from faultpath_quadrotor.checkpoint import ModelCard, checkpoint_path
-from faultpath_quadrotor.choices import INERTIAL
+from faultpath_quadrotor.choices import INERTIAL, Fixes
 from faultpath_quadrotor.device import CPU
+from faultpath_quadrotor.estimators import ErrorStateFilter, Estimator
+from faultpath_quadrotor.estimators.kalman import Trust
+from faultpath_quadrotor.estimators.sensors import sensors
 from faultpath_quadrotor.perception import ClearanceModel
+from faultpath_quadrotor.planners import (
+    CEM,
+    MPPI,
+    AutoregressiveSampler,
+    NavigationCost,
+    Planner,
+)
 from faultpath_quadrotor.platform import CLEARANCE, PLATFORM
 from faultpath_quadrotor.predictors import (
     AnchoredPredictor,
@@ -80,6 +91,24 @@ def clearance_model(device: torch.device = CPU) -> ClearanceModel:
         model = ClearanceModel()
     _fill(model, CLEARANCE, 0)
     return model.eval()
+
+
+def estimator(name: str, fixes: Fixes = Fixes.OPTICAL, device: torch.device = CPU) -> Estimator:
+    """Return an estimator of `choices.ESTIMATORS`."""
+    biases, doubt = name != "eskf-no-bias", 3.0 if name == "eskf-cautious" else 1.0
+    return ErrorStateFilter(Trust(sensors(fixes), biases, doubt), device)
+
+
+PLANNERS: Mapping[str, type[Planner]] = {"mppi": MPPI, "cem": CEM}
+"""Classes of `choices.PLANNERS`; `planner` builds them."""
+
+
+def planner(name: str, sampler: AutoregressiveSampler) -> Planner:
+    """Return a planner of `choices.PLANNERS`."""
+    cost = NavigationCost(PLATFORM.planner.weights)
+    if name == "cem":
+        return CEM(sampler, cost)
+    return MPPI(sampler, cost, PLATFORM.planner.temperature)
 
 
 def _fill(network: nn.Module, name: str, seed: int) -> None:

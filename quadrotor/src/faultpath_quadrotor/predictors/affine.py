@@ -4,7 +4,7 @@ import torch
 from torch import Tensor
 from torch.nn import functional
 
-from faultpath_quadrotor.native.kernel_args import as_kernel_argument
+from faultpath_quadrotor.native.kernel_args import lend, output
 from faultpath_quadrotor.native.library import kernels_for
 
 
@@ -22,13 +22,12 @@ def affine(weight: Tensor, bias: Tensor, x: Tensor, gelu: bool = False) -> Tenso
         y = torch.addmm(bias, weight, x)
         return functional.gelu(y) if gelu else y
     (outputs, inputs), columns = weight.shape, x.shape[1]
-    y = torch.empty(outputs, columns)
+    filled = output(outputs, columns)
     built.call(
         "faultpath_affine",
-        as_kernel_argument("weight", weight.detach().contiguous(), outputs, inputs),
-        as_kernel_argument("bias", bias.detach().contiguous(), outputs, 1),
-        as_kernel_argument("x", x.detach().contiguous(), inputs, columns),
-        *(outputs, inputs, columns, int(gelu)),
-        as_kernel_argument("y", y, outputs, columns),
+        lend("weight", weight, outputs, inputs),
+        lend("bias", bias, outputs, 1),
+        lend("x", x, inputs, columns),
+        *(outputs, inputs, columns, int(gelu), filled),
     )
-    return y
+    return filled.tensor

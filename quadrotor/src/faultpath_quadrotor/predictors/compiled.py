@@ -20,9 +20,10 @@ from faultpath_quadrotor.native.kernel_args import (
     BLOCK,
     Block,
     Lent,
-    as_kernel_argument,
     fields,
     is_exactly,
+    lend,
+    output,
     pack,
     unlike,
 )
@@ -162,24 +163,18 @@ class HorizonLoop:
         horizon, _, scenes, candidates = commands.shape
         if not horizon:
             raise ValueError("there is no step to roll out: the commands have a horizon of 0")
-        positions = commands.new_empty(3, scenes, horizon, candidates)
-        velocities = torch.empty_like(positions)
-        ends = commands.new_empty(12, scenes, candidates)
+        positions, velocities = (output(3, scenes, horizon, candidates) for _ in range(2))
+        ends = output(12, scenes, candidates)
         readings = {**dict(zip(_ROWS, inputs.state.parts, strict=False)), **inputs.delivered}
         self._kernels.call(
             "faultpath_roll",
             *(self._model, _Inputs(*self._lent(readings, scenes))),
-            as_kernel_argument(
-                "commands", commands.contiguous(), horizon, ACTION_FEATURES, scenes, candidates
-            ),
-            *(horizon, scenes, candidates),
-            as_kernel_argument("positions", positions, 3, scenes, horizon, candidates),
-            as_kernel_argument("velocities", velocities, 3, scenes, horizon, candidates),
-            as_kernel_argument("ends", ends, 12, scenes, candidates),
+            lend("commands", commands, horizon, ACTION_FEATURES, scenes, candidates),
+            *(horizon, scenes, candidates, positions, velocities, ends),
         )
-        rotation, rate = ends[:9].unflatten(0, (3, 3)), ends[9:]
-        final = State(positions[:, :, -1], velocities[:, :, -1], rotation, rate)
-        return Rollout(positions, velocities, final)
+        moved, pushed, (turned, rate) = positions.tensor, velocities.tensor, ends.tensor.split(9)
+        final = State(moved[:, :, -1], pushed[:, :, -1], turned.unflatten(0, (3, 3)), rate)
+        return Rollout(moved, pushed, final)
 
     def _lent(self, readings: Delivered, scenes: int) -> Iterable[Lent | None]:
         for read, rows in _ROWS.items():
@@ -192,7 +187,7 @@ class HorizonLoop:
                     "none"
                 )
             else:
-                yield as_kernel_argument(channel, readings[read].contiguous(), *rows, scenes, 1)
+                yield lend(channel, readings[read], *rows, scenes, 1)
 
 
 def _integrator(integrator: KinematicIntegrator) -> str:
@@ -235,9 +230,7 @@ def _packed(network: LatentNetwork) -> dict[str, _Layer]:
     for name, weights in _layers(network).items():
         packed = pack(weights.detach() * _SCALES.get(name, 1.0), BLOCK)
         blocks, inputs, _ = packed.shape
-        laid[name] = _Layer(
-            as_kernel_argument(name, packed, *packed.shape), inputs - 1, blocks * BLOCK
-        )
+        laid[name] = _Layer(lend(name, packed, *packed.shape), inputs - 1, blocks * BLOCK)
     return laid
 
 

@@ -12,7 +12,7 @@ import torch
 from torch import Tensor, nn
 
 from faultpath_quadrotor.batching import Delivered
-from faultpath_quadrotor.native.kernel_args import as_kernel_argument, covered, tell_portable
+from faultpath_quadrotor.native.kernel_args import covered, lend, output, tell_portable
 from faultpath_quadrotor.native.library import kernels_on
 from faultpath_quadrotor.predictors.affine import affine
 from faultpath_quadrotor.state import State
@@ -73,23 +73,23 @@ class GatedCell(nn.Module):
         """Return the latent `[latent, N]` after a sequence `[T, inputs, N]`, from zero."""
         built = None if torch.is_grad_enabled() else kernels_on(sequence.device)
         steps, inputs, columns = sequence.shape
-        latent = sequence.new_zeros(self.latent, columns)
         if built is None or not self._has_kernel(sequence):
+            latent = sequence.new_zeros(self.latent, columns)
             for step in sequence:
                 latent = self(step, latent)
             return latent
         gates, entering, kept = 3 * self.latent, self.from_input, self.from_latent
+        last = output(self.latent, columns)
         built.call(
             "faultpath_recur",
-            as_kernel_argument("weights of the inputs", entering.weight.detach(), gates, inputs),
-            as_kernel_argument("biases of the inputs", entering.bias.detach(), gates, 1),
-            as_kernel_argument("weights of the latent", kept.weight.detach(), gates, self.latent),
-            as_kernel_argument("biases of the latent", kept.bias.detach(), gates, 1),
-            as_kernel_argument("sequence", sequence.contiguous(), steps, inputs, columns),
-            *(steps, inputs, columns),
-            as_kernel_argument("latent", latent, self.latent, columns),
+            lend("weights of the inputs", entering.weight, gates, inputs),
+            lend("biases of the inputs", entering.bias, gates, 1),
+            lend("weights of the latent", kept.weight, gates, self.latent),
+            lend("biases of the latent", kept.bias, gates, 1),
+            lend("sequence", sequence, steps, inputs, columns),
+            *(steps, inputs, columns, last),
         )
-        return latent
+        return last.tensor
 
     def _has_kernel(self, sequence: Tensor) -> bool:
         layers = (self.from_input, self.from_latent)

@@ -21,7 +21,7 @@ import torch
 from torch import Tensor
 
 from faultpath_quadrotor import native
-from faultpath_quadrotor.native.kernel_args import Block, as_kernel_argument, covered, fields
+from faultpath_quadrotor.native.kernel_args import Block, covered, fields, lend, output
 from faultpath_quadrotor.scenes.geometry import rectangle_distance
 from faultpath_quadrotor.scenes.prisms import RoundedPrism, arena, solids
 from faultpath_quadrotor.scenes.scene import Scene
@@ -187,16 +187,10 @@ class DistanceField:
         if kernels is None or field is None:
             return self._interpolate(points)
         scenes, count = len(self.first), points.shape[2]
-        distances = torch.empty(scenes, count)
-        points = points.expand(3, scenes, count).float().contiguous()
-        kernels.call(
-            "faultpath_field",
-            field,
-            as_kernel_argument("points", points, 3, scenes, count),
-            *(scenes, count),
-            as_kernel_argument("distances", distances, scenes, count),
-        )
-        return distances
+        distances, points = output(scenes, count), points.expand(3, scenes, count).float()
+        queried = lend("points", points, 3, scenes, count)
+        kernels.call("faultpath_field", field, queried, scenes, count, distances)
+        return distances.tensor
 
     @cached_property
     def _field(self) -> _Field | None:
@@ -210,11 +204,11 @@ class DistanceField:
         if self.pitch[2] != 1 or min(self.pitch) < 1 or not bool(inside.all()):
             raise ValueError(f"distance field: cells of pitch {self.pitch} lie outside its table")
         return _Field(
-            as_kernel_argument("table", self.table, self.table.numel()),
+            lend("table", self.table, self.table.numel()),
             *self.pitch[:2],
-            as_kernel_argument("origin", self.origin.contiguous(), 3, scenes, 1),
-            as_kernel_argument("last", self.last.contiguous(), 3, scenes, 1),
-            as_kernel_argument("first", self.first.contiguous(), scenes, 1, dtype=torch.int32),
+            lend("origin", self.origin, 3, scenes, 1),
+            lend("last", self.last, 3, scenes, 1),
+            lend("first", self.first, scenes, 1, dtype=torch.int32),
             self.per_metre,
         )
 

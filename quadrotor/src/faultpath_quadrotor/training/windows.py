@@ -188,12 +188,17 @@ DeliveredInputs = Mapping[tuple[str, str], Tensor]
 history and horizon."""
 
 
+def readers_of(model: Predictor) -> frozenset[str]:
+    """Return the names under which the interface lists the places where a model reads."""
+    return frozenset(f"predictor.{place}" for place in model.reads)
+
+
 def correct(model: Predictor, windows: Windows) -> DeliveredInputs:
     """Return the true calibration at every place at which a model reads it."""
     return {
         (channel, reader): value
         for channel, value in windows.calibration.items()
-        for reader in model.readers()
+        for reader in readers_of(model)
     }
 
 
