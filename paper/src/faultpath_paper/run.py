@@ -26,12 +26,7 @@ from faultpath.system import System
 from faultpath_paper.answers import Reproduction, Sweep
 from faultpath_paper.cells import HELD_OUT, PROFILES, SYSTEM, Profile
 from faultpath_paper.claims import ledger
-from faultpath_paper.evidence.table import (
-    EvidenceTable,
-    Measurement,
-    read_evidence,
-    write_evidence,
-)
+from faultpath_paper.evidence.table import EvidenceTable, Measurement, read_evidence, write_evidence
 from faultpath_paper.flights import Flown, Leg, plan_legs
 from faultpath_paper.page import Page
 from faultpath_paper.pages import PAGES

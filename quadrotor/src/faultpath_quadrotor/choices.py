@@ -127,9 +127,7 @@ class QuadrotorChoices(Frozen):
     ] = 0.0
     fixes: Annotated[Fixes, "Where a filter's position fixes come from."] = Fixes.OPTICAL
     planner: Annotated[
-        str,
-        "What plans, or your own as file.py:factory.",
-        Offered(*PLANNERS, factories=True),
+        str, "What plans, or your own as file.py:factory.", Offered(*PLANNERS, factories=True)
     ] = "mppi"
     sampler: Annotated[SamplerName, "How candidates are drawn."] = SamplerName.AUTOREGRESSIVE
     candidates: Annotated[

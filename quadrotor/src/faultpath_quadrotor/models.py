@@ -15,13 +15,7 @@ from faultpath_quadrotor.estimators import ErrorStateFilter, Estimator
 from faultpath_quadrotor.estimators.kalman import Trust
 from faultpath_quadrotor.estimators.sensors import sensors
 from faultpath_quadrotor.perception import ClearanceModel
-from faultpath_quadrotor.planners import (
-    CEM,
-    MPPI,
-    AutoregressiveSampler,
-    NavigationCost,
-    Planner,
-)
+from faultpath_quadrotor.planners import CEM, MPPI, AutoregressiveSampler, NavigationCost, Planner
 from faultpath_quadrotor.platform import CLEARANCE, PLATFORM
 from faultpath_quadrotor.predictors import (
     AnchoredPredictor,

@@ -13,15 +13,7 @@ from faultpath.faults import FaultPreset
 from faultpath.interface import Interface
 from faultpath.loop import Deliverer, Loop, Module, Part, Plant
 from faultpath.plugin.system import UserError
-from faultpath.system import (
-    VEHICLE,
-    FloorPlan,
-    Library,
-    LoopSystem,
-    Outcome,
-    SceneRef,
-    Wiring,
-)
+from faultpath.system import VEHICLE, FloorPlan, Library, LoopSystem, Outcome, SceneRef, Wiring
 from faultpath_quadrotor import native
 from faultpath_quadrotor.checkpoint import shipped_folder
 from faultpath_quadrotor.choices import (

@@ -1,14 +1,7 @@
 """C30, C31, C34, C35, C40: how a biased reconstruction makes up for a wrong model (Table VI)."""
 
 from faultpath_paper.cells import Printed, published
-from faultpath_paper.claims.rules import (
-    NO_LOSS,
-    Rule,
-    at_least,
-    by_point,
-    less_than,
-    within,
-)
+from faultpath_paper.claims.rules import NO_LOSS, Rule, at_least, by_point, less_than, within
 from faultpath_paper.claims.statement import Statement, Statements
 from faultpath_paper.pages import in_text, table_4, table_6
 from faultpath_paper.quantities.summaries import rank_correlation

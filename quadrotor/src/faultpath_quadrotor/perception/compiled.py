@@ -8,12 +8,7 @@ from torch import Tensor, nn
 from faultpath_quadrotor.native.kernel_args import BLOCK, Block, Lent, fields, lend, output, pack
 from faultpath_quadrotor.native.library import Kernels
 from faultpath_quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH, slopes
-from faultpath_quadrotor.perception.clearance import (
-    CODE,
-    INVERSE_SCALE,
-    NEAREST_M,
-    ClearanceModel,
-)
+from faultpath_quadrotor.perception.clearance import CODE, INVERSE_SCALE, NEAREST_M, ClearanceModel
 from faultpath_quadrotor.perception.labels import HIGHEST_M, LOWEST_M
 
 ENCODER_SHAPES = ((16, 2, 5, 5), (32, 16, 3, 3), (48, 32, 3, 3), (128, 48 * 5 * 8), (64, 128))

@@ -13,12 +13,7 @@ from faultpath_quadrotor.plant.motors import RateLoop
 from faultpath_quadrotor.plant.protocol import Contact, Plant, PlantState, TrialProgress
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.state import State
-from faultpath_quadrotor.vehicle import (
-    COLLECTIVE_MAX_N,
-    GRAVITY_MPS2,
-    PLANT_DT_S,
-    RATE_LIMIT_RADPS,
-)
+from faultpath_quadrotor.vehicle import COLLECTIVE_MAX_N, GRAVITY_MPS2, PLANT_DT_S, RATE_LIMIT_RADPS
 
 
 class TorchPlant(Plant):

@@ -73,11 +73,7 @@ class Winds(Frozen):
         return self.sample(stream, self.levels[level], duration_s, rate_hz)
 
     def pool_series(
-        self,
-        collection_seed: int,
-        episode: int,
-        duration_s: float,
-        rate_hz: float = PLANT_RATE_HZ,
+        self, collection_seed: int, episode: int, duration_s: float, rate_hz: float = PLANT_RATE_HZ
     ) -> Array:
         """Return a training episode's wind, [T, 3] m/s, keyed by collection seed and episode.
 
@@ -119,11 +115,7 @@ def one_minus_cosine(time_s: Array, onset_s: float, duration_s: float, peak: flo
 
 
 def dryden(
-    stream: np.random.Generator,
-    steps: int,
-    rate_hz: float,
-    airspeed_mps: float,
-    length_m: float,
+    stream: np.random.Generator, steps: int, rate_hz: float, airspeed_mps: float, length_m: float
 ) -> Array:
     """Return turbulence of unit standard deviation along and twice across the flow, [steps, 3].
 

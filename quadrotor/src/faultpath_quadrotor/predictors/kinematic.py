@@ -122,11 +122,7 @@ class KinematicIntegrator(Predictor):
         return self.advance(state, command, memory), memory
 
     def advance(
-        self,
-        state: State,
-        command: Tensor,
-        constants: Constants,
-        residual: Residual | None = None,
+        self, state: State, command: Tensor, constants: Constants, residual: Residual | None = None
     ) -> State:
         """Advance one interval; a residual of zero changes no bit of the result."""
         dt = self._dt

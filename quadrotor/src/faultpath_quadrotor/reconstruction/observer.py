@@ -44,10 +44,7 @@ class DisturbanceObserver(Reconstruction):
     )
 
     def __init__(
-        self,
-        drag_kgps: Sequence[float],
-        low_pass: float = LOW_PASS,
-        dt_s: float = CONTROL_DT_S,
+        self, drag_kgps: Sequence[float], low_pass: float = LOW_PASS, dt_s: float = CONTROL_DT_S
     ) -> None:
         self._alpha = low_pass
         self._dt = dt_s
