@@ -114,7 +114,7 @@ def measure_all(
     measurements = plan.measurements()
     unique = tuple(dict.fromkeys(measurements.values()))
     table = measure(unique, plan.profile.scenes, folder / "windows", workers, progress)
-    return EvidenceTable({m: table.values(own) for m, own in measurements.items()})
+    return EvidenceTable({m: table[own] for m, own in measurements.items()})
 
 
 def conclude(plan: ReproductionPlan, results: Results) -> Reproduction:

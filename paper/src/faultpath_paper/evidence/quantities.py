@@ -161,7 +161,7 @@ def measure(
             for measurement, path in waiting.items()
         ]
         make_missing((flights, tables), workers, progress)
-    return EvidenceTable({m: read_evidence(paths[m]).values(m) for m in unique})
+    return EvidenceTable({m: read_evidence(paths[m])[m] for m in unique})
 
 
 @arithmetic()

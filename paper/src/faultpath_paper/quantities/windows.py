@@ -7,7 +7,6 @@ from functools import lru_cache
 from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faultpath.stats.contrast import Contrast, weighted_sum
 from faultpath.stats.effects import WindowQuantiles
@@ -128,19 +127,16 @@ def _check_windows(results: Results, measurements: list[Measurement]) -> None:
             raise NotRun(f"{measurement.subject} on the windows of {measurements[0].subject}")
 
 
-@lru_cache(maxsize=512)
 def _mean(evidence: EvidenceTable, subject: Subject, q: float) -> Contrast:
-    effects = [_quantile(evidence, measurement, q) for measurement in subject]
+    effects = [_quantile(evidence[m], q, QUANTITIES[m.quantity]) for m in subject]
     mean = weighted_sum([1 / len(effects)] * len(effects), effects)
     per_seed = tuple(effect.value for effect in effects)
     return replace(mean, per_seed=per_seed, n_seeds=len(effects))
 
 
 @lru_cache(maxsize=512)
-def _quantile(evidence: EvidenceTable, measurement: Measurement, q: float) -> Contrast:
-    measured: Measured = evidence.values(measurement)
-    values: NDArray[np.float64] = measured.values
-    return _resampled(measured.scenes).value(values, q, QUANTITIES[measurement.quantity])
+def _quantile(measured: Measured, q: float, unit: str) -> Contrast:
+    return _resampled(measured.scenes).value(measured.values, q, unit)
 
 
 @lru_cache(maxsize=8)

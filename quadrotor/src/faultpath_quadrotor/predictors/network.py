@@ -10,11 +10,11 @@ from dataclasses import dataclass
 
 import torch
 from torch import Tensor, nn
+from torch.nn import functional
 
 from faultpath_quadrotor.batching import Delivered
 from faultpath_quadrotor.native.kernel_args import covered, lend, output, tell_portable
-from faultpath_quadrotor.native.library import kernels_on
-from faultpath_quadrotor.predictors.affine import affine
+from faultpath_quadrotor.native.library import kernels_for, kernels_on
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import GRAVITY_MPS2
 
@@ -25,6 +25,31 @@ ACTION_EMBEDDING = 16  # derived: with it the parameter counts are the paper's
 STATE_FEATURES = 15
 ACTION_FEATURES = 4
 BASE_FEATURES = STATE_FEATURES + ACTION_FEATURES  # 19 (paper, Section IV-A)
+
+
+def affine(weight: Tensor, bias: Tensor, x: Tensor, gelu: bool = False) -> Tensor:
+    """Return `weight @ x + bias` `[outputs, N]`, through a Gaussian error linear unit if asked.
+
+    Args:
+        weight: `[outputs, inputs]`.
+        bias: `[outputs, 1]`.
+        x: `[inputs, N]`.
+        gelu: Whether the unit follows.
+    """
+    built = kernels_for(weight, bias, x)
+    if built is None:
+        y = torch.addmm(bias, weight, x)
+        return functional.gelu(y) if gelu else y
+    (outputs, inputs), columns = weight.shape, x.shape[1]
+    filled = output(outputs, columns)
+    built.call(
+        "faultpath_affine",
+        lend("weight", weight, outputs, inputs),
+        lend("bias", bias, outputs, 1),
+        lend("x", x, inputs, columns),
+        *(outputs, inputs, columns, int(gelu), filled),
+    )
+    return filled.tensor
 
 
 class Affine(nn.Module):
