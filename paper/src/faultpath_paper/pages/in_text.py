@@ -96,11 +96,12 @@ WINDY_SUBJECTS = ("wm-a-wind/true-wind", table_3.WITHHELD, "wm-a-wind/zero-wind"
 
 NINE = tuple((method, condition) for method in table_4.METHODS for condition in table_4.CONDITIONS)
 """Methods and interfaces of Table IV."""
+MEASURED: tuple[Quantity, ...] = ("acceleration-error", "position-error")
 MECHANISM = tuple(
     error
-    for measure in (table_6.acceleration_error, table_6.position_error)
+    for quantity in MEASURED
     for method, condition in NINE
-    for error in table_6.by_seed(measure, method, condition)
+    for error in table_6.errors(quantity, method, condition)
 )
 """Errors of the analytic acceleration and of the full prediction, of each of the nine."""
 
