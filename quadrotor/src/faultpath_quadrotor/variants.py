@@ -71,9 +71,8 @@ class VariantParts:
         """Return the predictor for a treatment of this seed; blank for `None`."""
         fixed = self.predictor_seed is not None and seed is not None
         trained = self.predictor_seed if fixed else seed
-        if self.predictor in self.user_parts:
-            return self.user_parts[self.predictor].load(trained, device)
-        return predictor(self.predictor, trained, device)
+        own = self.user_parts.get(self.predictor)
+        return own.load(trained, device) if own else predictor(self.predictor, trained, device)
 
     def load_reconstruction(
         self, seed: int | None, device: torch.device = CPU
@@ -81,9 +80,8 @@ class VariantParts:
         """Return the wind reconstruction for a treatment of this seed, if the variant has one."""
         if self.wind is None or self.wind in _FIXED:
             return None
-        if self.wind in self.user_parts:
-            return self.user_parts[self.wind].load(seed, device)
-        return reconstruction(self.wind, seed, device)
+        own = self.user_parts.get(self.wind)
+        return own.load(seed, device) if own else reconstruction(self.wind, seed, device)
 
     def load_planner(self, seed: int | None, options: QuadrotorOptions) -> Planner:
         """Return the planner for a treatment of this seed."""

@@ -9,7 +9,7 @@ from torch import Tensor
 
 from faultpath_quadrotor.native.kernel_args import Block, Lent, fields, lend, output
 from faultpath_quadrotor.native.library import Kernels
-from faultpath_quadrotor.plant.protocol import Contact, PlantState, TrialProgress
+from faultpath_quadrotor.plant.protocol import CONTACT_EVERY, Contact, PlantState, TrialProgress
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import (
     COLLECTIVE_MAX_N,
@@ -120,7 +120,7 @@ class CompiledPlant:
             lend("solids", solids, len(solids), _SOLID, lanes, dtype=torch.float64),
             len(solids),
             lend("goal", contact.goal, 3, lanes, dtype=torch.float64),
-            *(COLLISION_RADIUS_M, contact.every, steps, PLANT_RATE_HZ),
+            *(COLLISION_RADIUS_M, CONTACT_EVERY, steps, PLANT_RATE_HZ),
             *standing.values(),
         )
         flown = self.advance(plant_state, command, winds, trial)

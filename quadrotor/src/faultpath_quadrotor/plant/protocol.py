@@ -38,8 +38,6 @@ class Contact:
     geometry: Geometry
     goal: Tensor
     """`[3, L]`, m."""
-    every: int = CONTACT_EVERY
-    """Plant steps between two looks."""
 
     @cached_property
     def solids(self) -> Tensor:
@@ -137,7 +135,7 @@ class Plant(ABC):
         `steps` plant steps of the trials came before. A plant that has a faster way to the same
         states and progress overrides this.
         """
-        for block in winds.split(contact.every):
+        for block in winds.split(CONTACT_EVERY):
             plant_state = self.advance(plant_state, command, block)
             steps += len(block)
             progress = contact.look(progress, plant_state.state, steps)

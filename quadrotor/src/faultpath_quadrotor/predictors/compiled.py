@@ -34,7 +34,7 @@ from faultpath_quadrotor.predictors.anchored import (
     AnchoredPredictor,
 )
 from faultpath_quadrotor.predictors.base import Predictor, PredictorInputs, Rollout
-from faultpath_quadrotor.predictors.kinematic import KinematicIntegrator, LinearDrag
+from faultpath_quadrotor.predictors.kinematic import KEEP, MEAN, KinematicIntegrator, LinearDrag
 from faultpath_quadrotor.predictors.network import (
     ACTION_EMBEDDING,
     ACTION_FEATURES,
@@ -47,7 +47,7 @@ from faultpath_quadrotor.predictors.unanchored import (
     UnanchoredPredictor,
 )
 from faultpath_quadrotor.state import State
-from faultpath_quadrotor.vehicle import GRAVITY_MPS2
+from faultpath_quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2
 
 MOST_HIDDEN = 128
 """Fixed in `rollout.cpp`, as are the other sizes."""
@@ -148,8 +148,7 @@ class HorizonLoop:
                 **_packed(predictor.network),
             }
         if integrator is not None:
-            dt, keep, mean = integrator.step_constants
-            step |= {"dt": dt, "keep": keep, "mean": mean, "dragging": integrator.drag}
+            step |= {"dt": CONTROL_DT_S, "keep": KEEP, "mean": MEAN, "dragging": integrator.drag}
             step |= {"windy": "wind_map" in integrator.reads}
             step |= {"drag": integrator.air.coefficients_kgps}
         self._model = _Model(**step)

@@ -45,17 +45,17 @@ class Lattice:
     """
 
     axes: tuple[Tensor, Tensor, Tensor]
-    spacing_m: float
+    spacing_m: float = CELL_M
 
     @classmethod
-    def over(cls, scene: Scene, spacing_m: float = CELL_M) -> "Lattice":
+    def over(cls, scene: Scene) -> "Lattice":
         """Return the lattice that covers a scene; its third point is the arena's low corner."""
         axes: list[Tensor] = []
         for low, high in zip(scene.bounds.low_m, scene.bounds.high_m, strict=True):
-            cells = ceil((high - low) / spacing_m - _ROUNDING)
+            cells = ceil((high - low) / CELL_M - _ROUNDING)
             steps = torch.arange(-_MARGIN, cells + 1 + _MARGIN, dtype=torch.float64)
-            axes.append(low + steps * spacing_m)
-        return cls((axes[0], axes[1], axes[2]), spacing_m)
+            axes.append(low + steps * CELL_M)
+        return cls((axes[0], axes[1], axes[2]))
 
     @property
     def shape(self) -> tuple[int, int, int]:
@@ -146,13 +146,11 @@ class DistanceField:
         cls,
         scenes: Scene | Sequence[Scene],
         free_space: bool = False,
-        *,
-        spacing_m: float = CELL_M,
         device: torch.device | str | None = None,
     ) -> "DistanceField":
         """Bake scenes, or their boundaries alone, into one table: about 0.8 MB each."""
         scenes = [scenes] if isinstance(scenes, Scene) else list(scenes)
-        lattices = [Lattice.over(scene, spacing_m) for scene in scenes]
+        lattices = list(map(Lattice.over, scenes))
         shapes = torch.tensor([lattice.shape for lattice in lattices])  # [B, 3]
         nx, ny, nz = (int(n) for n in shapes.amax(0))
         table = torch.zeros(len(scenes), nx, ny, nz)
@@ -166,7 +164,7 @@ class DistanceField:
             origin=origin.float().T[:, :, None].contiguous().to(device),
             last=(shapes - 2).float().T[:, :, None].contiguous().to(device),
             first=(torch.arange(len(scenes)) * nx * ny * nz).int()[:, None].to(device),
-            per_metre=1.0 / spacing_m,
+            per_metre=1.0 / CELL_M,
         )
 
     def select(self, rows: Tensor | Iterable[int]) -> "DistanceField":
