@@ -107,7 +107,7 @@ MECHANISM = tuple(
 
 PAGE = Page(
     "text",
-    cells=(
+    more_cells=(
         *(noisy(model, error) for model in ("wm-a", "wm-a+dcc") for error in ERRORS),
         *(noisy_wind(variant) for variant in (table_3.GRU, table_3.ZERO)),
         *(WIND_UPDATED, WIND_FROZEN, CODE_UPDATED, CODE_FROZEN, WITHHELD_UPDATED, WITHHELD_FROZEN),
@@ -118,7 +118,7 @@ PAGE = Page(
         REFERENCE_PLANNER,
         *OTHER_PLANNERS.values(),
     ),
-    measurements=(
+    more_measurements=(
         *(response(model, probe) for model in ("wm-a", "wm-a+dcc") for probe in PROBES),
         *map(windy_error, WINDY_SUBJECTS),
         *MECHANISM,

@@ -82,8 +82,8 @@ class TorchPlant(Plant):
         state, dt_s = plant_state.state, self._dt_s
         free = motors.gyroscopic(self._coupling, state.rate)
         commands = self._loop.motor_commands(level, target, state.rate, free)
-        thrusts = motors.respond(plant_state.thrusts, commands, self._left_end)
-        mean = motors.respond(plant_state.thrusts, commands, self._left_mean)
+        thrusts = torch.lerp(commands, plant_state.thrusts, self._left_end)
+        mean = torch.lerp(commands, plant_state.thrusts, self._left_mean)
         kick_and_torque = (self._acceleration * mean).sum(1)
 
         rotation, rate = motors.turn(
