@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from functools import lru_cache
+from typing import Any
 
 import torch
 from torch import nn
@@ -87,10 +88,17 @@ def clearance_model(device: torch.device = CPU) -> ClearanceModel:
     return model.eval()
 
 
+_FILTERS: Mapping[str, Any] = {
+    "eskf": {},
+    "eskf-no-bias": {"biases": False},
+    "eskf-cautious": {"doubt": 3.0},
+}
+"""What each Kalman filter trusts otherwise than `Trust`."""
+
+
 def estimator(name: str, fixes: Fixes = Fixes.OPTICAL, device: torch.device = CPU) -> Estimator:
     """Return an estimator of `choices.ESTIMATORS`."""
-    biases, doubt = name != "eskf-no-bias", 3.0 if name == "eskf-cautious" else 1.0
-    return ErrorStateFilter(Trust(sensors(fixes), biases, doubt), device)
+    return ErrorStateFilter(Trust(sensors(fixes), **_FILTERS[name]), device)
 
 
 PLANNERS: Mapping[str, type[Planner]] = {"mppi": MPPI, "cem": CEM}
