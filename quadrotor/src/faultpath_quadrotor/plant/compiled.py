@@ -9,7 +9,7 @@ from torch import Tensor
 
 from faultpath_quadrotor.native.kernel_args import Block, Lent, fields, lend, output
 from faultpath_quadrotor.native.library import Kernels
-from faultpath_quadrotor.plant.protocol import CONTACT_EVERY, Contact, PlantState, TrialProgress
+from faultpath_quadrotor.plant.protocol import CONTACT_EVERY, PlantState, Standing
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import (
     COLLECTIVE_MAX_N,
@@ -102,29 +102,28 @@ class CompiledPlant:
         return PlantState(State(*state), thrusts)
 
     def fly(
-        self,
-        plant_state: PlantState,
-        command: Tensor,
-        winds: Tensor,
-        contact: Contact,
-        progress: TrialProgress,
-        steps: int,
-    ) -> tuple[PlantState, TrialProgress]:
+        self, plant_state: PlantState, command: Tensor, winds: Tensor, standing: Standing
+    ) -> tuple[PlantState, Standing]:
         """Advance with contact checks between the steps; see `Plant.fly`."""
-        lanes, solids = self._airframes.tensor.shape[1], contact.solids
-        standing = {  # copies, which the kernel changes
+        lanes, contact, progress = (
+            self._airframes.tensor.shape[1],
+            standing.contact,
+            standing.progress,
+        )
+        ends = {  # copies, which the kernel changes
             name: lend(name, getattr(progress, name).clone(), lanes, dtype=dtype)
             for name, dtype in _STANDING.items()
         }
         trial = _Trial(
-            lend("solids", solids, len(solids), _SOLID, lanes, dtype=torch.float64),
-            len(solids),
+            lend("solids", contact.solids, len(contact.solids), _SOLID, lanes, dtype=torch.float64),
+            len(contact.solids),
             lend("goal", contact.goal, 3, lanes, dtype=torch.float64),
-            *(COLLISION_RADIUS_M, CONTACT_EVERY, steps, PLANT_RATE_HZ),
-            *standing.values(),
+            *(COLLISION_RADIUS_M, CONTACT_EVERY, standing.steps, PLANT_RATE_HZ),
+            *ends.values(),
         )
         flown = self.advance(plant_state, command, winds, trial)
-        return flown, replace(progress, **{name: ends.tensor for name, ends in standing.items()})
+        progress = replace(progress, **{name: lent.tensor for name, lent in ends.items()})
+        return flown, Standing(contact, progress, standing.steps + len(winds))
 
 
 def _ready(name: str, value: Tensor, *shape: int) -> Lent:
