@@ -23,7 +23,6 @@ HORIZON = 20  # paper, Section IV-A
 COMMANDS = HISTORY + HORIZON
 STRIDE = 29
 """Least spacing of the windows of an episode: four in one of 6 s."""
-VALIDATION_SHARE = 0.05
 COUNTS = {"nominal": 25_684, "wind": 53_344}
 """Windows of the pools in all, before the split (paper, Section IV-A and appendix)."""
 
@@ -100,13 +99,13 @@ class Windows:
             self.motor_thrust_n[k],
         )
 
-    def split(self) -> tuple[Windows, Windows]:
+    def split(self, validation_share: float = 0.05) -> tuple[Windows, Windows]:
         """Return the windows for training and those for validation, by episode.
 
         Pool and episode decide alone, whatever else is collected, joined or taken.
         """
         episodes = [name.rpartition("/")[0] for name in self.ids]
-        held_out = torch.from_numpy(validates(episodes, VALIDATION_SHARE))
+        held_out = torch.from_numpy(validates(episodes, validation_share))
         return self.take(~held_out), self.take(held_out)
 
     @classmethod
