@@ -86,14 +86,14 @@ MEDIANS: dict[Measurement, float] = {
     **{
         error: table_6.paper_acceleration(*of)
         for of in product(table_4.METHODS, table_6.INTERFACES)
-        for error in table_6.by_seed(table_6.acceleration_error, *of)
+        for error in table_6.errors("acceleration-error", *of)
     },
-    **dict.fromkeys(table_6.by_seed(table_6.wind_term_error, "gru", "reconstruction-only"), 1.93),
-    **dict.fromkeys(table_6.by_seed(table_6.wind_term_error, "gru", "shared"), 1.83),
+    **dict.fromkeys(table_6.errors("wind-term-error", "gru", "reconstruction-only"), 1.93),
+    **dict.fromkeys(table_6.errors("wind-term-error", "gru", "shared"), 1.83),
     **{
         error: median
         for of, median in zip(in_text.NINE, POSITIONS, strict=True)
-        for error in table_6.by_seed(table_6.position_error, *of)
+        for error in table_6.errors("position-error", *of)
     },
 }
 

@@ -159,7 +159,7 @@ def effect(n: int, wins: int, losses: int) -> Contrast:
     """Return the tested difference of one seed with so many scenes won and lost."""
     scene = np.arange(n)
     variants = scene < wins, (scene >= wins) & (scene < wins + losses)
-    return with_test(success_effect(*variants, test="conditional"))
+    return with_test(success_effect(*variants, Resamples.draw("scenes", n), test="conditional"))
 
 
 N = 40

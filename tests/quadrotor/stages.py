@@ -18,9 +18,9 @@ import numpy as np
 import torch
 from faultpath_quadrotor.batching import Delivered
 from faultpath_quadrotor.device import arithmetic
-from faultpath_quadrotor.estimators import filtering
+from faultpath_quadrotor.estimators import ErrorStateFilter
 from faultpath_quadrotor.estimators.sensors import SAMPLES, SENSORS, SensorErrors, readings, sensors
-from faultpath_quadrotor.models import clearance_model, predictor, reconstruction
+from faultpath_quadrotor.models import clearance_model, estimator, predictor, reconstruction
 from faultpath_quadrotor.perception import DepthClearance, DepthRenderer, mounted
 from faultpath_quadrotor.planners import CEM, MPPI, NavigationCost, Scored
 from faultpath_quadrotor.planners.mppi import softmax
@@ -87,15 +87,16 @@ def world() -> Stages:
 
 def state_filter() -> Stages:
     """Yield the error-state filter's beliefs after some readings."""
-    estimator = filtering("eskf")
+    eskf = estimator("eskf")
+    assert isinstance(eskf, ErrorStateFilter)
     known = None
     for step in range(6):
         read = {
             name: numbers(f"{name} {step}", *sensor.shape, LANES, low=-0.5, high=0.5)
             for name, sensor in sensors().items()
         }
-        known = estimator.begun(read) if known is None else estimator.taken(known, read, step)
-    yield "filter", (known, estimator.estimates(known, read))
+        known = eskf.begun(read) if known is None else eskf.taken(known, read, step)
+    yield "filter", (known, eskf.estimates(known, read))
 
 
 def told(step: int) -> Delivered:

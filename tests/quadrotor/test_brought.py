@@ -78,7 +78,7 @@ def test_parts_fly_do_what_they_say_and_as_the_shipped_one_that_they_equal():
 @pytest.mark.filterwarnings("ignore::faultpath_quadrotor.native.kernel_args.PortableNotice")
 def test_a_variant_gets_a_part_of_its_own_with_the_seed_that_it_names():
     system = quadrotor(predictor=PREDICTOR, predictor_seed="1")
-    named, chosen = system.setups[PREDICTOR], system.setups["gru"]
+    named, chosen = system.variant_parts[PREDICTOR], system.variant_parts["gru"]
     assert (named.load_predictor(2).seed, chosen.load_predictor(2).seed) == (2, 1)
     assert named.load_predictor(None).seed is None
     assert named.load_predictor(2) is not named.load_predictor(2)

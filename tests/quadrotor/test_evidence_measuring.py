@@ -49,11 +49,11 @@ def contents(folder) -> dict[str, bytes]:
 def test_all_subjects_have_the_same_windows_of_the_recorded_scenes(whole, library):
     _, table = whole
     assert list(table) == asked(library)
-    first = table.values(asked(library)[0])
+    first = table[asked(library)[0]]
     assert set(first.scenes) == {"halls/000", "halls/001"}
     assert first.scenes == tuple(sorted(first.scenes))
     for measurement in table:
-        assert table.values(measurement).same_windows(first)
+        assert table[measurement].same_windows(first)
 
 
 @pytest.mark.parametrize("stop", [1, 4])
@@ -81,14 +81,14 @@ def test_a_second_call_does_nothing_and_more_scenes_keep_what_is_there(whole, li
     again = measure(asked(library), 2, folder, 0, lambda done, total: told.append(total))
     assert told == [0]
     for measurement in table:
-        assert np.array_equal(again.values(measurement).values, table.values(measurement).values)
+        assert np.array_equal(again[measurement].values, table[measurement].values)
     one = asked(library)[:1]
     measure(one, 1, tmp_path)
     flown = {path.name for path in tmp_path.glob("*.safetensors")}
     measure(one, 2, tmp_path)
     assert flown < {path.name for path in tmp_path.glob("*.safetensors")}
-    few = measure(one, 1, tmp_path).values(one[0])
-    both = table.values(one[0])
+    few = measure(one, 1, tmp_path)[one[0]]
+    both = table[one[0]]
     assert np.array_equal(few.values, both.values[: len(few)])
 
 
@@ -99,13 +99,13 @@ def test_a_table_comes_back_as_it_went_with_the_same_bytes(whole, library, tmp_p
     back = read_evidence(path)
     assert list(back) == list(table)
     for measurement in table:
-        one, two = table.values(measurement), back.values(measurement)
+        one, two = table[measurement], back[measurement]
         assert one.same_windows(two)
         assert np.array_equal(one.values, two.values)
     write_evidence(again, back)
     assert again.read_bytes() == path.read_bytes()
     with pytest.raises(KeyError):
-        back.values(asked(library)[0].model_copy(update={"seed": 2}))
+        back[asked(library)[0].model_copy(update={"seed": 2})]
     with pytest.raises(UserError, match="cannot read"):
         read_evidence(tmp_path / "none.parquet")
     path.write_bytes(b"odd")

@@ -9,7 +9,7 @@ from faultpath_quadrotor.training import catalogue, trajectories
 from faultpath_quadrotor.training.catalogue import ALL, GROUPS, FitJob, choose, stages
 from faultpath_quadrotor.training.collection import EPISODES, recipe
 from faultpath_quadrotor.training.fitting import fit, journal_path
-from faultpath_quadrotor.training.jobs import Overview, missing_pools, run_jobs
+from faultpath_quadrotor.training.jobs import missing_pools, run_jobs
 from faultpath_quadrotor.training.pool import Provenance
 from fitting_toys import Toy, entry
 
@@ -18,7 +18,7 @@ from faultpath.learning.tensor_files import encoded
 from faultpath.run.work import processes as processes_of_work
 
 
-def _run(tmp_path: Path, wanted: list[FitJob], workers: int = 0, told=lambda _: None, **more):
+def _run(tmp_path: Path, wanted: list[FitJob], workers: int = 0, told=lambda *_: None, **more):
     data, out = tmp_path / "data", tmp_path / "out"
     return run_jobs(wanted, data, out, workers, told, lambda _: None, **more)
 
@@ -89,8 +89,8 @@ def test_ctrl_c_ends_the_workers_and_keeps_their_epochs(tmp_path, monkeypatch):
         original(self)
         processes.append(self.popen)
 
-    def stop(now: Overview) -> None:
-        if journal.exists() and now.running:
+    def stop(done: float, news: str) -> None:
+        if journal.exists() and "slow-0 epoch" in news:
             raise KeyboardInterrupt
 
     monkeypatch.setattr(processes_of_work._Process, "__init__", note)

@@ -3,7 +3,7 @@
 import pytest
 import torch
 from faultpath_quadrotor import native
-from faultpath_quadrotor.native.kernel_args import as_kernel_argument
+from faultpath_quadrotor.native.kernel_args import lend
 from faultpath_quadrotor.predictors import PredictorInputs
 from faultpath_quadrotor.predictors.rollout import rolling
 from test_native_rollout import commands_of, inputs_of, predictor
@@ -16,8 +16,7 @@ WRONG: dict[str, tuple[Tensor, str]] = {
     "shape": (torch.zeros(3, 5), r"shape \[3, 5\], not \[3, 4\]"),
     "dtype": (torch.zeros(3, 4, dtype=torch.float64), "float64, not float32"),
     "device": (torch.zeros(3, 4, device="meta"), "on meta, not on the CPU"),
-    "layout": (torch.zeros(4, 3).T, "not contiguous"),
-    "expanded": (torch.zeros(1, 4).expand(3, 4), "not contiguous"),
+    "layout": (torch.zeros(3, 4).to_sparse(), "not dense"),
     "gradient": (torch.zeros(3, 4, requires_grad=True), "gradient"),
 }
 
@@ -25,7 +24,14 @@ WRONG: dict[str, tuple[Tensor, str]] = {
 @pytest.mark.parametrize(("tensor", "says"), WRONG.values(), ids=WRONG)
 def test_memory_that_a_kernel_would_misread_is_refused(tensor: Tensor, says: str) -> None:
     with pytest.raises(ValueError, match=rf"kernel: 'commands' .*{says}.*FAULTPATH_KERNELS"):
-        as_kernel_argument("commands", tensor, 3, 4)
+        lend("commands", tensor, 3, 4)
+
+
+@pytest.mark.parametrize("tensor", [torch.rand(4, 3).T, torch.rand(1, 4).expand(3, 4)])
+def test_a_kernel_is_lent_numbers_that_lie_in_a_row(tensor: Tensor) -> None:
+    lent = lend("commands", tensor, 3, 4).tensor
+    assert lent.is_contiguous()
+    assert torch.equal(lent, tensor)
 
 
 def test_a_tensor_that_nobody_checked_never_reaches_a_kernel() -> None:

@@ -4,7 +4,7 @@ import pytest
 import torch
 from faultpath_quadrotor import native
 from faultpath_quadrotor.angles import sine_cosine
-from faultpath_quadrotor.predictors.affine import affine
+from faultpath_quadrotor.predictors.network import affine
 
 
 @torch.inference_mode()

@@ -16,7 +16,8 @@ from faultpath_quadrotor.planners import (
     SamplerSettings,
     Scored,
 )
-from faultpath_quadrotor.planners.mppi import mean, softmax
+from faultpath_quadrotor.planners.base import mean
+from faultpath_quadrotor.planners.mppi import softmax
 from faultpath_quadrotor.predictors.rollout import Rollout
 from faultpath_quadrotor.state import State
 from kernel_sets import FUSED

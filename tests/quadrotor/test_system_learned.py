@@ -6,7 +6,7 @@ from faultpath_quadrotor.choices import STATE_NOISE_STD
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.models import predictor, reconstruction
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
-from faultpath_quadrotor.variants import setups
+from faultpath_quadrotor.variants import variants
 from flights import HELD_OUT, fault, fly, quadrotor
 
 STEPS = 5
@@ -15,12 +15,13 @@ pytestmark = pytest.mark.usefixtures("short")
 
 
 def test_a_variants_seed_chooses_the_training_of_what_its_variant_names():
-    found = {each.name: each for each in setups(quadrotor(**LEARNED).options)}
+    found = {parts.name: parts for parts in variants(quadrotor(**LEARNED).options)}
     assert found["gru"].load_reconstruction(2) is reconstruction("gru", 2, CPU)
     assert found["gru"].load_predictor(2) is predictor("wm-a-wind", 0, CPU)
     assert found["wm-a"].load_predictor(2) is predictor("wm-a", 2, CPU)
     assert found["wm-a-wind/gru"].load_predictor(2) is predictor("wm-a-wind", 2, CPU)
-    other = {each.name: each for each in setups(quadrotor(**LEARNED, predictor_seed="1").options)}
+    others = variants(quadrotor(**LEARNED, predictor_seed="1").options)
+    other = {parts.name: parts for parts in others}
     assert other["gru"].load_predictor(2) is predictor("wm-a-wind", 1, CPU)
 
 

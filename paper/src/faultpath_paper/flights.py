@@ -7,14 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from faultpath.faults import at_readers
-from faultpath.run import (
-    Plan,
-    Row,
-    SystemSpec,
-    Treatment,
-    Trials,
-    load_system,
-)
+from faultpath.run import Plan, Row, SystemSpec, Treatment, Trials, load_system
 from faultpath.run.execution.runner import RunResult
 from faultpath.run.work.executor import Progress
 from faultpath.system import System

@@ -169,17 +169,19 @@ class Page:
     name: str
     """Such as `table-2`."""
     parts: tuple[TableSpec | FigureSpec, ...] = ()
-    cells: tuple[Cell, ...] = ()
-    """Cells that the page needs run; those of its parts are added."""
-    measurements: tuple[Measurement, ...] = ()
-    """Measurements that the page needs; likewise."""
+    more_cells: tuple[Cell, ...] = ()
+    """Cells that none of its parts shows."""
+    more_measurements: tuple[Measurement, ...] = ()
 
-    def __post_init__(self) -> None:
-        """Add the cells and measurements of the parts."""
-        cells = (*self.cells, *(cell for part in self.parts for cell in part.cells))
-        measurements = (*self.measurements, *(m for part in self.parts for m in part.measurements))
-        object.__setattr__(self, "cells", cells)
-        object.__setattr__(self, "measurements", measurements)
+    @property
+    def cells(self) -> tuple[Cell, ...]:
+        """Cells that the page needs run."""
+        return (*self.more_cells, *(cell for part in self.parts for cell in part.cells))
+
+    @property
+    def measurements(self) -> tuple[Measurement, ...]:
+        """Measurements that the page needs."""
+        return (*self.more_measurements, *(m for part in self.parts for m in part.measurements))
 
     def build(self, results: Results) -> Built:
         """Return the page's tables and figures as a run fills them; never raises `NotRun`."""

@@ -100,7 +100,7 @@ class Results:
         """Return the values of a measurement; `NotRun` when it was not made."""
         if measurement not in self.evidence:
             raise NotRun(f"{measurement.quantity} of {measurement.subject}")
-        return self.evidence.values(measurement)
+        return self.evidence[measurement]
 
     def resamples(self, pairs: Pairs) -> Resamples:
         """Return the scene resamples that every contrast over so many scenes shares."""

@@ -26,12 +26,7 @@ from faultpath.system import System
 from faultpath_paper.answers import Reproduction, Sweep
 from faultpath_paper.cells import HELD_OUT, PROFILES, SYSTEM, Profile
 from faultpath_paper.claims import ledger
-from faultpath_paper.evidence.table import (
-    EvidenceTable,
-    Measurement,
-    read_evidence,
-    write_evidence,
-)
+from faultpath_paper.evidence.table import EvidenceTable, Measurement, read_evidence, write_evidence
 from faultpath_paper.flights import Flown, Leg, legs_of
 from faultpath_paper.page import Page
 from faultpath_paper.pages import PAGES
@@ -119,7 +114,7 @@ def measure_all(
     measurements = chosen.measurements()
     unique = tuple(dict.fromkeys(measurements.values()))
     table = measure(unique, chosen.profile.scenes, folder / "windows", workers, progress)
-    return EvidenceTable({m: table.values(own) for m, own in measurements.items()})
+    return EvidenceTable({m: table[own] for m, own in measurements.items()})
 
 
 def conclude(chosen: ChosenPages, results: Results) -> Reproduction:

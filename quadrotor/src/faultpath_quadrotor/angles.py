@@ -6,13 +6,10 @@ Torch leaves both to a library that chooses its code by who made the processor.
 import torch
 from torch import Tensor
 
-from faultpath_quadrotor.native.kernel_args import as_kernel_argument
+from faultpath_quadrotor.native.kernel_args import lend, output
 from faultpath_quadrotor.native.library import kernels_on
 
-_NAMES = {
-    torch.float32: "faultpath_sine_cosine_single",
-    torch.float64: "faultpath_sine_cosine",
-}
+_NAMES = {torch.float32: "faultpath_sine_cosine_single", torch.float64: "faultpath_sine_cosine"}
 
 
 def sine_cosine(angle: Tensor) -> tuple[Tensor, Tensor]:
@@ -23,12 +20,7 @@ def sine_cosine(angle: Tensor) -> tuple[Tensor, Tensor]:
     built = None if torch.is_grad_enabled() else kernels_on(angle.device)
     if built is None or angle.dtype not in _NAMES:
         return angle.sin(), angle.cos()
-    sine, cosine = (torch.empty(angle.shape, dtype=angle.dtype) for _ in range(2))
-    built.call(
-        _NAMES[angle.dtype],
-        as_kernel_argument("angle", angle.contiguous(), *angle.shape, dtype=angle.dtype),
-        angle.numel(),
-        as_kernel_argument("sine", sine, *angle.shape, dtype=angle.dtype),
-        as_kernel_argument("cosine", cosine, *angle.shape, dtype=angle.dtype),
-    )
-    return sine, cosine
+    sine, cosine = (output(*angle.shape, dtype=angle.dtype) for _ in range(2))
+    angles = lend("angle", angle, *angle.shape, dtype=angle.dtype)
+    built.call(_NAMES[angle.dtype], angles, angle.numel(), sine, cosine)
+    return sine.tensor, cosine.tensor

@@ -83,9 +83,9 @@ class Chunk:
         return slice(first, last + 1) if whole else self.index
 
 
-def chunks(running: Sequence[int], device: torch.device) -> tuple[Chunk, ...]:
+def into_chunks(running: Sequence[int], device: torch.device) -> tuple[Chunk, ...]:
     """Split scenes into as few chunks as possible, of nearly equal size; one on an accelerator."""
     count = -(-len(running) // CHUNK) if host_readable(device) else 1
     ends = [len(running) * i // count for i in range(count + 1)]
-    parts = (tuple(running[a:b]) for a, b in pairwise(ends))
-    return tuple(Chunk(part, send(torch.tensor(part), device)) for part in parts)
+    groups = (tuple(running[a:b]) for a, b in pairwise(ends))
+    return tuple(Chunk(group, send(torch.tensor(group), device)) for group in groups)

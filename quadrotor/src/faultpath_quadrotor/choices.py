@@ -4,7 +4,6 @@ A new option is one field of `QuadrotorChoices`: flags, help and messages follow
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import Annotated
 
@@ -87,20 +86,14 @@ RECONSTRUCTIONS: Mapping[str, str] = {
 """The shipped wind reconstructions, in words; `models` builds them."""
 
 
-@dataclass(frozen=True)
-class Tuning:
-    """How a shipped filter is tuned; see `estimators.kalman.Trust`."""
-
-    description: str
-    biases: bool = True
-    doubt: float = 1.0
-
-
-FILTERS: Mapping[str, Tuning] = {
-    "eskf": Tuning("a Kalman filter that estimates the biases of its inertial sensors"),
-    "eskf-no-bias": Tuning("a Kalman filter that takes its inertial sensors for unbiased", False),
-    "eskf-cautious": Tuning("a Kalman filter that takes fixes for three times as noisy", doubt=3.0),
+ESTIMATORS: Mapping[str, str] = {
+    "eskf": "a Kalman filter that estimates the biases of its inertial sensors",
+    "eskf-no-bias": "a Kalman filter that takes its inertial sensors for unbiased",
+    "eskf-cautious": "a Kalman filter that takes fixes for three times as noisy",
 }
+"""The shipped estimators that read sensors, in words; `models` builds them."""
+PLANNERS = ("mppi", "cem")
+"""The shipped planners; `models` builds them."""
 
 
 class QuadrotorChoices(Frozen):
@@ -125,7 +118,7 @@ class QuadrotorChoices(Frozen):
     estimator: Annotated[
         str,
         "What turns sensors into the state, or your own as file.py:factory.",
-        Offered("exact", *FILTERS, factories=True),
+        Offered("exact", *ESTIMATORS, factories=True),
     ] = "exact"
     sensor_noise: Annotated[
         float,
@@ -134,9 +127,7 @@ class QuadrotorChoices(Frozen):
     ] = 0.0
     fixes: Annotated[Fixes, "Where a filter's position fixes come from."] = Fixes.OPTICAL
     planner: Annotated[
-        str,
-        "What plans, or your own as file.py:factory.",
-        Offered("mppi", "cem", factories=True),
+        str, "What plans, or your own as file.py:factory.", Offered(*PLANNERS, factories=True)
     ] = "mppi"
     sampler: Annotated[SamplerName, "How candidates are drawn."] = SamplerName.AUTOREGRESSIVE
     candidates: Annotated[

@@ -10,11 +10,7 @@ import os
 from functools import cache
 from pathlib import Path
 
-SETTINGS = {
-    "ATEN_CPU_CAPABILITY": "avx2",
-    "ONEDNN_MAX_CPU_ISA": "AVX2",
-    "MKL_CBWR": "COMPATIBLE",
-}
+SETTINGS = {"ATEN_CPU_CAPABILITY": "avx2", "ONEDNN_MAX_CPU_ISA": "AVX2", "MKL_CBWR": "COMPATIBLE"}
 """Torch's own operations and the two libraries of its matrix products. MKL promises the same bits
 on processors of all makers in this mode alone."""
 

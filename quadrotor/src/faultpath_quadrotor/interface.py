@@ -7,13 +7,13 @@ from importlib.resources import files
 from faultpath.interface import Interface
 from faultpath.loop import Part, Port, interface_of
 from faultpath_quadrotor.perception.module import Perception
-from faultpath_quadrotor.planners.module import Planning
+from faultpath_quadrotor.planners.module import PlannerModule
 from faultpath_quadrotor.plant.module import VehiclePlant
 from faultpath_quadrotor.predictors.history import HistoryEncoder
-from faultpath_quadrotor.predictors.module import Prediction
+from faultpath_quadrotor.predictors.module import PredictorModule
 from faultpath_quadrotor.predictors.predictor_inputs import PLACES, ports
 from faultpath_quadrotor.reconstruction import DisturbanceObserver
-from faultpath_quadrotor.reconstruction.module import WindReconstruction
+from faultpath_quadrotor.reconstruction.module import WindModule
 from faultpath_quadrotor.reconstruction.network import READS
 
 
@@ -29,10 +29,12 @@ def quadrotor_interface() -> Interface:
     """Return the interface that training, audits and reports share."""
     reconstruction = (Port(*read) for read in (*DisturbanceObserver.reads, *READS))
     parts = (
-        _Declared(Prediction.name, ports(PLACES), *Prediction.writes, *HistoryEncoder.writes),
-        _Declared(WindReconstruction.name, reconstruction, *WindReconstruction.writes),
+        _Declared(
+            PredictorModule.name, ports(PLACES), *PredictorModule.writes, *HistoryEncoder.writes
+        ),
+        _Declared(WindModule.name, reconstruction, *WindModule.writes),
         _Declared(Perception.name, Perception.reads, *Perception.writes),
-        _Declared(Planning.name, Planning.reads, *Planning.writes),
+        _Declared(PlannerModule.name, PlannerModule.reads, *PlannerModule.writes),
         _Declared(VehiclePlant.name, VehiclePlant.reads),
     )
     facts = files("faultpath_quadrotor").joinpath("interface.yaml").read_text("utf-8")

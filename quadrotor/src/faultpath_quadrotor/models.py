@@ -1,6 +1,8 @@
 """Shipped parts by name, with their trained weights."""
 
+from collections.abc import Mapping
 from functools import lru_cache
+from typing import Any
 
 import torch
 from torch import nn
@@ -8,9 +10,13 @@ from torch import nn
 from faultpath.plugin.system import UserError
 from faultpath.plugin.training import fill
 from faultpath_quadrotor.checkpoint import ModelCard, checkpoint_path
-from faultpath_quadrotor.choices import INERTIAL
+from faultpath_quadrotor.choices import INERTIAL, Fixes
 from faultpath_quadrotor.device import CPU
+from faultpath_quadrotor.estimators import ErrorStateFilter, Estimator
+from faultpath_quadrotor.estimators.kalman import Trust
+from faultpath_quadrotor.estimators.sensors import sensors
 from faultpath_quadrotor.perception import ClearanceModel
+from faultpath_quadrotor.planners import CEM, MPPI, AutoregressiveSampler, NavigationCost, Planner
 from faultpath_quadrotor.platform import CLEARANCE, PLATFORM
 from faultpath_quadrotor.predictors import (
     AnchoredPredictor,
@@ -80,6 +86,31 @@ def clearance_model(device: torch.device = CPU) -> ClearanceModel:
         model = ClearanceModel()
     _fill(model, CLEARANCE, 0)
     return model.eval()
+
+
+_FILTERS: Mapping[str, Any] = {
+    "eskf": {},
+    "eskf-no-bias": {"biases": False},
+    "eskf-cautious": {"doubt": 3.0},
+}
+"""What each Kalman filter trusts otherwise than `Trust`."""
+
+
+def estimator(name: str, fixes: Fixes = Fixes.OPTICAL, device: torch.device = CPU) -> Estimator:
+    """Return an estimator of `choices.ESTIMATORS`."""
+    return ErrorStateFilter(Trust(sensors(fixes), **_FILTERS[name]), device)
+
+
+PLANNERS: Mapping[str, type[Planner]] = {"mppi": MPPI, "cem": CEM}
+"""Classes of `choices.PLANNERS`; `planner` builds them."""
+
+
+def planner(name: str, sampler: AutoregressiveSampler) -> Planner:
+    """Return a planner of `choices.PLANNERS`."""
+    cost = NavigationCost(PLATFORM.planner.weights)
+    if name == "cem":
+        return CEM(sampler, cost)
+    return MPPI(sampler, cost, PLATFORM.planner.temperature)
 
 
 def _fill(network: nn.Module, name: str, seed: int) -> None:

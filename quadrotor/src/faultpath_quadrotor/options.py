@@ -6,7 +6,7 @@ import torch
 
 from faultpath.plugin.system import UserError, call
 from faultpath_quadrotor.choices import (
-    FILTERS,
+    ESTIMATORS,
     ClearanceName,
     DeviceName,
     Environment,
@@ -14,12 +14,10 @@ from faultpath_quadrotor.choices import (
     SamplerName,
 )
 from faultpath_quadrotor.device import device_of, require
+from faultpath_quadrotor.models import PLANNERS, planner
 from faultpath_quadrotor.planners import (
-    CEM,
-    MPPI,
     AutoregressiveSampler,
     BundledSampler,
-    NavigationCost,
     Planner,
     SamplerSettings,
 )
@@ -46,16 +44,17 @@ class QuadrotorOptions(QuadrotorChoices):
             )
         if choices.environment is Environment.FREE_SPACE:
             options.setdefault("clearance", ClearanceName.TRUE)
-        if choices.estimator in FILTERS:
+        if choices.estimator in ESTIMATORS:
             options.setdefault("sensor_noise", 1.0)
         if choices.plant != "torch" and choices.device is not DeviceName.CPU:
             raise UserError(
                 f"plant '{choices.plant}' flies on the CPU only: leave --device out, or --plant."
             )
-        if choices.planner == "cem" and choices.sampler is SamplerName.MODE_PRESERVING:
+        kind = PLANNERS.get(choices.planner)
+        if choices.sampler is SamplerName.MODE_PRESERVING and kind and not kind.keeps_modes:
             raise UserError(
-                "planner 'cem' fits one mean to all candidates, so no sampler keeps its modes "
-                "apart: leave --sampler out, or plan with mppi."
+                f"planner '{choices.planner}' fits one mean to all candidates, so no sampler keeps "
+                "its modes apart: leave --sampler out, or plan with mppi."
             )
         require(choices.device)
         return cls.model_validate(options)
@@ -68,7 +67,7 @@ class QuadrotorOptions(QuadrotorChoices):
     @property
     def filtered(self) -> bool:
         """Whether a shipped filter estimates the state; all shipped filters are variants then."""
-        return self.estimator in FILTERS
+        return self.estimator in ESTIMATORS
 
     @property
     def free_space(self) -> bool:
@@ -83,16 +82,11 @@ class QuadrotorOptions(QuadrotorChoices):
     @property
     def sampling(self) -> SamplerSettings:
         """How many candidates are drawn at once, and how."""
-        rounds = CEM.iterations if self.planner == "cem" else 1
-        candidates = self.candidates // rounds
+        candidates = self.candidates // PLANNERS.get(self.planner, Planner).iterations
         return PLATFORM.planner.sampler.model_copy(update={"candidates": candidates})
 
     def build_planner(self) -> Planner:
         """Return the shipped planner of these options."""
-        planner = PLATFORM.planner
-        cost = NavigationCost(planner.weights)
-        if self.planner == "cem":
-            return CEM(AutoregressiveSampler(self.sampling), cost)
         bundled = self.sampler is SamplerName.MODE_PRESERVING
         sampler = (BundledSampler if bundled else AutoregressiveSampler)(self.sampling)
-        return MPPI(sampler, cost, planner.temperature)
+        return planner(self.planner, sampler)

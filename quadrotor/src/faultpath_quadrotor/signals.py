@@ -112,12 +112,14 @@ def _predicted(recording: Recording) -> Mapping[int, Mapping[int, Values]]:
         stacked = np.stack([flown[step + h] for h in range(horizon)])
         actions = torch.from_numpy(stacked).movedim(-1, 1).to(request.commands[0])
         commands = tuple(
-            actions[:, :, list(part.scenes)][..., None].expand(-1, -1, -1, _CANDIDATES).contiguous()
-            for part in request.parts
+            actions[:, :, list(chunk.scenes)][..., None]
+            .expand(-1, -1, -1, _CANDIDATES)
+            .contiguous()
+            for chunk in request.chunks
         )
         positions = np.full((len(stacked[0]), 3), np.nan)
         answer = query.answer(replace(request, commands=commands))
-        for part, rollout in zip(answer.parts, answer.rollouts, strict=True):
-            positions[list(part.scenes)] = rollout.positions[:, :, -1, 0].T.double().numpy()
+        for chunk, rollout in zip(answer.chunks, answer.rollouts, strict=True):
+            positions[list(chunk.scenes)] = rollout.positions[:, :, -1, 0].T.double().numpy()
         by_step[step + horizon] = positions
     return {horizon: by_step} if by_step else {}

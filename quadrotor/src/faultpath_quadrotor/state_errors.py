@@ -48,7 +48,7 @@ def state_errors(
 
     Raises `UserError` for a variant whose state no filter of ours estimates.
     """
-    filter_ = system.setups[variant].load_estimator(seed, system.options)
+    filter_ = system.variant_parts[variant].load_estimator(seed, system.options)
     if not isinstance(filter_, ErrorStateFilter):
         raise UserError(
             f"variant '{variant}' has no filter whose errors could be recorded: choose "

@@ -13,18 +13,11 @@ from faultpath.faults import FaultPreset
 from faultpath.interface import Interface
 from faultpath.loop import Deliverer, Loop, Module, Part, Plant
 from faultpath.plugin.system import UserError
-from faultpath.system import (
-    VEHICLE,
-    FloorPlan,
-    Library,
-    LoopSystem,
-    Outcome,
-    SceneRef,
-    Wiring,
-)
+from faultpath.system import VEHICLE, FloorPlan, Library, LoopSystem, Outcome, SceneRef, Wiring
 from faultpath_quadrotor import native
 from faultpath_quadrotor.checkpoint import shipped_folder
 from faultpath_quadrotor.choices import (
+    ESTIMATORS,
     INERTIAL,
     ClearanceName,
     DeviceName,
@@ -33,27 +26,27 @@ from faultpath_quadrotor.choices import (
     noisy_state,
 )
 from faultpath_quadrotor.device import CPU, arithmetic, describe
-from faultpath_quadrotor.estimators import Estimator, filtering
+from faultpath_quadrotor.estimators import Estimator
 from faultpath_quadrotor.estimators.protocol import with_estimators
 from faultpath_quadrotor.estimators.sensors import SENSORS, sensors
 from faultpath_quadrotor.interface import quadrotor_interface
-from faultpath_quadrotor.models import clearance_model, reconstruction
+from faultpath_quadrotor.models import clearance_model, estimator, reconstruction
 from faultpath_quadrotor.options import QuadrotorOptions
 from faultpath_quadrotor.perception import DepthClearance, DepthRenderer
 from faultpath_quadrotor.perception.module import Perception
-from faultpath_quadrotor.planners.module import Planning
+from faultpath_quadrotor.planners.module import PlannerModule
 from faultpath_quadrotor.plant import TorchPlant
 from faultpath_quadrotor.plant.module import VehiclePlant
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.plant.world import World
 from faultpath_quadrotor.platform import PLATFORM
-from faultpath_quadrotor.reconstruction.module import WindReconstruction
+from faultpath_quadrotor.reconstruction.module import WindModule
 from faultpath_quadrotor.scenes.field import DistanceField
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.scenes.prisms import floor_plan
 from faultpath_quadrotor.scenes.scene import Scene
 from faultpath_quadrotor.user_parts import load_user_parts
-from faultpath_quadrotor.variants import modelled, setups
+from faultpath_quadrotor.variants import modelled, variants
 from faultpath_quadrotor.vehicle import CONTROL_DT_S
 
 
@@ -72,7 +65,7 @@ class Quadrotor(LoopSystem):
         self.block_size = 50 if self.parallel else 100  # a GPU takes a library
         self._scenes: dict[str, Scene] = {}
         self.user_parts = load_user_parts(options.parts, options.sampling)
-        self.setups = {setup.name: setup for setup in setups(options, self.user_parts)}
+        self.variant_parts = {v.name: v for v in variants(options, self.user_parts)}
 
     @classmethod
     def parse(cls, **options: str) -> Self:
@@ -102,8 +95,8 @@ class Quadrotor(LoopSystem):
         estimators = [part for part in own if isinstance(part, Estimator)]
         if not self.options.filtered:
             return estimators
-        inertial = WindReconstruction(reconstruction(INERTIAL, None), CPU)
-        return (filtering(self.options.estimator), inertial, *estimators)
+        inertial = WindModule(reconstruction(INERTIAL, None), CPU)
+        return (*map(estimator, ESTIMATORS), inertial, *estimators)
 
     def library(self, name: str) -> Library:
         """See `System.library`; a library from a file is named by its path, to be loaded again."""
@@ -144,7 +137,7 @@ class Quadrotor(LoopSystem):
     @property
     @override
     def wirings(self) -> Mapping[str, Wiring]:
-        return {name: setup.wiring(self.options) for name, setup in self.setups.items()}
+        return {name: parts.wiring(self.options) for name, parts in self.variant_parts.items()}
 
     @override
     def plant(self) -> Plant:
@@ -171,14 +164,15 @@ class Quadrotor(LoopSystem):
 
     @override
     def modules(self, variant: str, seed: int | None) -> Sequence[Module]:
-        setup, place = self.setups[variant], self.options.place
+        parts, place = self.variant_parts[variant], self.options.place
         modules = modelled(
-            setup.load_predictor(seed, place),
-            setup.load_reconstruction(seed, place),
+            parts.load_predictor(seed, place),
+            parts.load_reconstruction(seed, place),
             place,
-            setup.load_estimator(seed, self.options),
+            parts.load_estimator(seed, self.options),
         )
-        modules.append(Planning(setup.load_planner(seed, self.options), place, self._hover))
+        planner = parts.load_planner(seed, self.options)
+        modules.append(PlannerModule(planner, place, self._hover_command))
         if self.options.clearance is not ClearanceName.TRUE:
             modules.append(
                 Perception(
@@ -195,7 +189,7 @@ class Quadrotor(LoopSystem):
     ) -> list[Outcome]:
         return super().execute(loop, scenes, taps, seed)
 
-    def _hover(self, scenes: Sequence[str]) -> torch.Tensor:
+    def _hover_command(self, scenes: Sequence[str]) -> torch.Tensor:
         """Return the command under which each scene's vehicle hovers, `[B, 4]`."""
         return Vehicle.stack([s.vehicle for s in self._records(scenes)]).hover_command().T
 

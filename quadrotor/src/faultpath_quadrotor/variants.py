@@ -15,22 +15,22 @@ import torch
 from faultpath.loop import Module
 from faultpath.system import Wiring
 from faultpath_quadrotor.choices import (
-    FILTERS,
+    ESTIMATORS,
     INERTIAL,
     PREDICTORS,
     RECONSTRUCTIONS,
     ClearanceName,
 )
 from faultpath_quadrotor.device import CPU
-from faultpath_quadrotor.estimators import Estimator, ExactEstimator, filtering
-from faultpath_quadrotor.models import predictor, reconstruction
+from faultpath_quadrotor.estimators import Estimator, ExactEstimator
+from faultpath_quadrotor.models import estimator, predictor, reconstruction
 from faultpath_quadrotor.options import QuadrotorOptions
 from faultpath_quadrotor.planners import Planner
 from faultpath_quadrotor.predictors import Predictor
 from faultpath_quadrotor.predictors.history import HistoryEncoder
-from faultpath_quadrotor.predictors.module import Prediction
+from faultpath_quadrotor.predictors.module import PredictorModule
 from faultpath_quadrotor.reconstruction import Reconstruction
-from faultpath_quadrotor.reconstruction.module import WindReconstruction
+from faultpath_quadrotor.reconstruction.module import WindModule
 from faultpath_quadrotor.user_parts import UserPart
 
 ZERO_WIND = "zero-wind"
@@ -44,8 +44,11 @@ _FIXED = {
 
 
 @dataclass(frozen=True)
-class Setup:
-    """Parts that a variant flies with, by the place that they take."""
+class VariantParts:
+    """Names of the parts that a variant flies with, and how each is loaded.
+
+    The engine's `Wiring` says what is shown of it, and its `Variant` adds the readers.
+    """
 
     name: str
     predictor: str
@@ -68,9 +71,8 @@ class Setup:
         """Return the predictor for a treatment of this seed; blank for `None`."""
         fixed = self.predictor_seed is not None and seed is not None
         trained = self.predictor_seed if fixed else seed
-        if self.predictor in self.user_parts:
-            return self.user_parts[self.predictor].load(trained, device)
-        return predictor(self.predictor, trained, device)
+        own = self.user_parts.get(self.predictor)
+        return own.load(trained, device) if own else predictor(self.predictor, trained, device)
 
     def load_reconstruction(
         self, seed: int | None, device: torch.device = CPU
@@ -78,9 +80,8 @@ class Setup:
         """Return the wind reconstruction for a treatment of this seed, if the variant has one."""
         if self.wind is None or self.wind in _FIXED:
             return None
-        if self.wind in self.user_parts:
-            return self.user_parts[self.wind].load(seed, device)
-        return reconstruction(self.wind, seed, device)
+        own = self.user_parts.get(self.wind)
+        return own.load(seed, device) if own else reconstruction(self.wind, seed, device)
 
     def load_planner(self, seed: int | None, options: QuadrotorOptions) -> Planner:
         """Return the planner for a treatment of this seed."""
@@ -92,20 +93,19 @@ class Setup:
         """Return the estimator for a treatment of this seed; `None` for the exact one."""
         if self.estimator is None:
             return None
-        if self.estimator in FILTERS:
-            return filtering(self.estimator, options.fixes, options.place)
+        if self.estimator in ESTIMATORS:
+            return estimator(self.estimator, options.fixes, options.place)
         return self.user_parts[self.estimator].load(seed, options.place)
 
     def wiring(self, options: QuadrotorOptions) -> Wiring:
-        """Return the setup as audits show it: described in words, with the sources it takes."""
+        """Return the variant as audits show it: in words, with the sources that it takes."""
         estimated = options.clearance is not ClearanceName.TRUE
         bindings = {
             "clearance": "estimated_clearance" if estimated else "true_clearance",
             "wind": "zero_wind",
         }
-        filters = {name: tuning.description for name, tuning in FILTERS.items()}
         own = {name: part.description for name, part in self.user_parts.items()}
-        known = {**PREDICTORS, **RECONSTRUCTIONS, **filters, **own}
+        known = {**PREDICTORS, **RECONSTRUCTIONS, **ESTIMATORS, **own}
         words = f"Prediction: {known[self.predictor]}"
         if self.wind is not None:
             reconstructed = ("reconstructed_wind", known.get(self.wind, ""))
@@ -118,30 +118,31 @@ class Setup:
         return Wiring(f"{words}.", bindings)
 
 
-def setups(
+def variants(
     options: QuadrotorOptions, user_parts: Mapping[str, UserPart] | None = None
-) -> Iterator[Setup]:
-    """Yield every way to wire the quadrotor under these options, with the user's own parts.
+) -> Iterator[VariantParts]:
+    """Yield every variant of the quadrotor under these options, with the user's own parts.
 
-    First come the few that together fly with the predictor of the options and every user part.
+    First come the few that together fly with the predictor of the options and every user part: a
+    check of the system that names no variants takes the first ones, and has to meet every part.
     """
-    every = list(_setups(options, user_parts or {}))
-    first: dict[str, Setup] = {}
+    every = list(_every(options, user_parts or {}))
+    first: dict[str, VariantParts] = {}
     named = {options.predictor, *(user_parts or {})}
     for part in (options.predictor, *(user_parts or {})):
-        if not any(part in setup.uses for setup in first.values()):
-            using = (setup for setup in every if part in setup.uses)
-            best = max(using, key=lambda setup: len(setup.uses & named), default=None)
+        if not any(part in variant.uses for variant in first.values()):
+            using = (variant for variant in every if part in variant.uses)
+            best = max(using, key=lambda variant: len(variant.uses & named), default=None)
             first |= {} if best is None else {best.name: best}
     yield from first.values()
-    yield from (setup for setup in every if setup.name not in first)
+    yield from (variant for variant in every if variant.name not in first)
 
 
-def _setups(options: QuadrotorOptions, user_parts: Mapping[str, UserPart]) -> Iterator[Setup]:
+def _every(options: QuadrotorOptions, user_parts: Mapping[str, UserPart]) -> Iterator[VariantParts]:
     chosen, seed = options.predictor, options.predictor_seed
     shipped = [name for name in RECONSTRUCTIONS if options.filtered or name != INERTIAL]
     winds = (ZERO_WIND, *shipped, *_of(Reconstruction, user_parts), TRUE_WIND)
-    base = Setup(
+    base = VariantParts(
         chosen,
         chosen,
         seed,
@@ -158,15 +159,13 @@ def _setups(options: QuadrotorOptions, user_parts: Mapping[str, UserPart]) -> It
         for name in (*PREDICTORS, *_of(Predictor, user_parts))
     ]
     named += [replace(base, name=name, planner=name) for name in _of(Planner, user_parts)]
-    filters = FILTERS if options.filtered else ()
-    named += [
-        replace(base, name=name, estimator=name) for name in (*filters, *_of(Estimator, user_parts))
-    ]
-    for setup in named:
-        windy = _has_wind(setup.predictor, user_parts)
-        yield replace(setup, wind=ZERO_WIND if windy else None)
+    estimators = (*(ESTIMATORS if options.filtered else ()), *_of(Estimator, user_parts))
+    named += [replace(base, name=name, estimator=name) for name in estimators]
+    for variant in named:
+        windy = _has_wind(variant.predictor, user_parts)
+        yield replace(variant, wind=ZERO_WIND if windy else None)
         for wind in winds if windy else ():
-            yield replace(setup, name=f"{setup.name}/{wind}", wind=wind)
+            yield replace(variant, name=f"{variant.name}/{wind}", wind=wind)
 
 
 def _of(kind: type, user_parts: Mapping[str, UserPart]) -> Iterator[str]:
@@ -191,10 +190,10 @@ def modelled(
     modules: list[Module] = [] if estimator is None else [estimator]
     modules += [
         ExactEstimator(estimator.writes if estimator else ()),
-        Prediction(predictor, device),
+        PredictorModule(predictor, device),
     ]
     if reconstruction is not None:
-        modules.append(WindReconstruction(reconstruction, device))
+        modules.append(WindModule(reconstruction, device))
     if "history" in predictor.reads:
         modules.append(HistoryEncoder(predictor, device))
     return modules

@@ -1,14 +1,7 @@
 """C30, C31, C34, C35, C40: how a biased reconstruction makes up for a wrong model (Table VI)."""
 
 from faultpath_paper.cells import Printed, published
-from faultpath_paper.claims.rules import (
-    NO_LOSS,
-    Rule,
-    at_least,
-    by_point,
-    less_than,
-    within,
-)
+from faultpath_paper.claims.rules import NO_LOSS, Rule, at_least, by_point, less_than, within
 from faultpath_paper.claims.statement import Statement, Statements
 from faultpath_paper.pages import in_text, table_4, table_6
 from faultpath_paper.quantities.summaries import rank_correlation
@@ -31,7 +24,7 @@ _CORRELATIONS = published("in_text", "spearman_success")
 
 
 def _acceleration(method: str, interface: str) -> Subject:
-    return table_6.by_seed(table_6.acceleration_error, method, interface)
+    return table_6.errors("acceleration-error", method, interface)
 
 
 def _over_nominal(method: str, interface: str, rule: Rule) -> Statement:
@@ -83,8 +76,8 @@ CLAIMS: dict[str, Statements] = {
         Statement(
             "wind-term error of GRU, shared over reconstruction-only,",
             ratio(
-                table_6.by_seed(table_6.wind_term_error, GRU, SHARED),
-                table_6.by_seed(table_6.wind_term_error, GRU, ISOLATED),
+                table_6.errors("wind-term-error", GRU, SHARED),
+                table_6.errors("wind-term-error", GRU, ISOLATED),
             ),
             WITHIN_15_PERCENT,
             Printed(_WIND_TERM["shared"] / _WIND_TERM["isolated"]),
@@ -101,24 +94,26 @@ CLAIMS: dict[str, Statements] = {
             f"rank correlation of success with {error} over {len(in_text.NINE)} cells",
             rank_correlation(
                 [
-                    (table_4.cell(method, condition), table_6.by_seed(measure, method, condition))
+                    (table_4.cell(method, condition), table_6.errors(quantity, method, condition))
                     for method, condition in in_text.NINE
                 ]
             ),
             by_point(-1, -0.5, strict=False),
             Printed(_CORRELATIONS[key]),
         )
-        for error, key, measure in (
-            ("acceleration error", "analytic_acceleration_error", table_6.acceleration_error),
-            ("20-step position error", "position_error_20_step", table_6.position_error),
+        for error, key, quantity in zip(
+            ("acceleration error", "20-step position error"),
+            ("analytic_acceleration_error", "position_error_20_step"),
+            in_text.MEASURED,
+            strict=True,
         )
     ),
     "C35": (
         Statement(
             "median position error with GRU, shared minus reconstruction-only,",
             difference_of_quantiles(
-                table_6.by_seed(table_6.position_error, GRU, SHARED),
-                table_6.by_seed(table_6.position_error, GRU, ISOLATED),
+                table_6.errors("position-error", GRU, SHARED),
+                table_6.errors("position-error", GRU, ISOLATED),
             ),
             NO_LOSS,
         ),

@@ -3,14 +3,7 @@
 from itertools import combinations
 
 from faultpath_paper.cells import Cell, Printed, of_seed, published
-from faultpath_paper.claims.rules import (
-    ABOVE,
-    BELOW,
-    NO_DIFFERENCE,
-    NO_LOSS,
-    at_least,
-    by_point,
-)
+from faultpath_paper.claims.rules import ABOVE, BELOW, NO_DIFFERENCE, NO_LOSS, at_least, by_point
 from faultpath_paper.claims.statement import Statement, Statements
 from faultpath_paper.pages import table_1
 from faultpath_paper.quantities.differences import crashes, success, time, timeouts

@@ -4,14 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from faultpath_paper.cells import Cell, Printed, published
-from faultpath_paper.claims.rules import (
-    ABOVE,
-    BELOW,
-    NO_DIFFERENCE,
-    NO_LOSS,
-    Rule,
-    by_point,
-)
+from faultpath_paper.claims.rules import ABOVE, BELOW, NO_DIFFERENCE, NO_LOSS, Rule, by_point
 from faultpath_paper.claims.statement import (
     ALL_SEEDS,
     Statement,
@@ -21,12 +14,7 @@ from faultpath_paper.claims.statement import (
 )
 from faultpath_paper.pages.table_4 import CONDITIONS, cell, change, paper_contrast, paper_rate
 from faultpath_paper.pages.table_6 import negative, paper_negative
-from faultpath_paper.quantities.differences import (
-    combined,
-    succeeded,
-    success,
-    terminal_distance,
-)
+from faultpath_paper.quantities.differences import combined, succeeded, success, terminal_distance
 
 CORRECT, ISOLATED, SHARED = "correct", "reconstruction-only", "shared"
 GRU, DCC, DOB = "gru", "gru+dcc", "dob"

@@ -20,13 +20,7 @@ from faultpath_paper.claims.rules import (
 )
 from faultpath_paper.detection import detection, least_detectable, resampled
 from faultpath_paper.quantities.differences import Pair, together
-from faultpath_paper.results import (
-    NotRun,
-    Quantity,
-    Results,
-    Undecidable,
-    decisive,
-)
+from faultpath_paper.results import NotRun, Quantity, Results, Undecidable, decisive
 
 NO_EFFECT = {"pp": 0.0, "s": 0.0, "m": 0.0, "m/s^2": 0.0, "times": 1.0}
 """Value of no effect, by unit; in any other unit, as for a share of scenes, there is no sign."""

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from faultpath_paper.cells import Printed, published
-from faultpath_paper.claims.rules import ABOVE, BELOW, NO_DIFFERENCE, NO_GAIN, by_point
+from faultpath_paper.claims.rules import ABOVE, BELOW, NO_DIFFERENCE, NO_GAIN, Rule, by_point
 from faultpath_paper.claims.statement import Statement, Statements
 from faultpath_paper.pages import in_text
 from faultpath_paper.pages.table_3 import (
@@ -20,14 +20,23 @@ from faultpath_paper.pages.table_3 import (
 from faultpath_paper.quantities.differences import success
 from faultpath_paper.quantities.windows import difference_of_quantiles
 
-L3 = "L3"
 OBSTACLES = "obstacles"
 
 _FROZEN = published("in_text", "freeze_reconstructed_wind_at_step_20")
 
 
-def _paper(first: str, second: str, environment: str = OBSTACLES, level: str = L3) -> Printed:
-    return Printed(paper_rate(first, environment, level) - paper_rate(second, environment, level))
+Row = tuple[str, str, str]
+"""Variant, environment and wind level of an entry of Table III."""
+
+
+def _gap(words: str, first: Row, second: Row, rule: Rule) -> Statement:
+    """Compare two entries of Table III: success of the first minus the second."""
+    paper = Printed(paper_rate(*first) - paper_rate(*second))
+    return Statement(words, success(cell(*first), cell(*second)), rule, paper)
+
+
+def _l3(variant: str) -> Row:
+    return variant, OBSTACLES, "L3"
 
 
 CLAIMS: dict[str, Statements] = {
@@ -43,37 +52,27 @@ CLAIMS: dict[str, Statements] = {
         )
     ),
     "C17": tuple(
-        Statement(
+        _gap(
             f"success of zero wind minus the wind-withheld model at {level}, {environment},",
-            success(cell(ZERO, environment, level), cell(WITHHELD, environment, level)),
+            (ZERO, environment, level),
+            (WITHHELD, environment, level),
             NO_GAIN,
-            _paper(ZERO, WITHHELD, environment, level),
         )
         for environment in ENVIRONMENTS
-        for level in ("L2", L3)
+        for level in ("L2", "L3")
     ),
     "C18": tuple(
-        Statement(
+        _gap(
             f"success of ground-truth wind minus zero wind at L3, {environment}",
-            success(cell(TRUE, environment, L3), cell(ZERO, environment, L3)),
+            (TRUE, environment, "L3"),
+            (ZERO, environment, "L3"),
             ABOVE,
-            _paper(TRUE, ZERO, environment),
         )
         for environment in ENVIRONMENTS
     ),
     "C19": (
-        Statement(
-            "success of GRU minus ground-truth wind at L3",
-            success(cell(GRU, OBSTACLES, L3), cell(TRUE, OBSTACLES, L3)),
-            NO_DIFFERENCE,
-            _paper(GRU, TRUE),
-        ),
-        Statement(
-            "success of GRU minus zero wind at L3",
-            success(cell(GRU, OBSTACLES, L3), cell(ZERO, OBSTACLES, L3)),
-            ABOVE,
-            _paper(GRU, ZERO),
-        ),
+        _gap("success of GRU minus ground-truth wind at L3", _l3(GRU), _l3(TRUE), NO_DIFFERENCE),
+        _gap("success of GRU minus zero wind at L3", _l3(GRU), _l3(ZERO), ABOVE),
     ),
     "C20": (
         Statement(
@@ -91,11 +90,11 @@ CLAIMS: dict[str, Statements] = {
         ),
     ),
     "C22": (
-        Statement(
+        _gap(
             "success of the trajectory-trained GRU minus the collection-trained one at L3",
-            success(cell(TRAJECTORY, OBSTACLES, L3), cell(GRU, OBSTACLES, L3)),
+            _l3(TRAJECTORY),
+            _l3(GRU),
             by_point(-1),
-            _paper(TRAJECTORY, GRU),
         ),
     ),
     "C43": (
@@ -103,16 +102,16 @@ CLAIMS: dict[str, Statements] = {
             "success of the trajectory-trained GRU minus zero wind at L0",
             success(in_text.TRAJECTORY_STILL, cell(ZERO, OBSTACLES, "L0")),
             by_point(-1),
-            _paper(TRAJECTORY, ZERO, level="L0"),
+            Printed(paper_rate(TRAJECTORY, OBSTACLES, "L0") - paper_rate(ZERO, OBSTACLES, "L0")),
         ),
     ),
     # The paper sets one flight of a frozen wind beside the mean over all seeds of the zero input.
     "C45": (
         Statement(
             "success with the reconstructed wind frozen minus zero wind, free space at L3",
-            success(replace(in_text.WIND_FROZEN, fixed=True), cell(ZERO, "free-space", L3)),
+            success(replace(in_text.WIND_FROZEN, fixed=True), cell(ZERO, "free-space", "L3")),
             by_point(-1),
-            Printed(_FROZEN["after"] - paper_rate(ZERO, "free-space", L3)),
+            Printed(_FROZEN["after"] - paper_rate(ZERO, "free-space", "L3")),
         ),
     ),
 }

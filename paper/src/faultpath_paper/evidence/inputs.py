@@ -58,8 +58,8 @@ class Subject:
     @classmethod
     def load(cls, system: Quadrotor, name: str, seed: int) -> Subject:
         """Load a variant; `UserError` where a checkpoint is missing."""
-        setup = system.setups[name]
-        models = setup.load_predictor(seed), setup.load_reconstruction(seed)
+        parts = system.variant_parts[name]
+        models = parts.load_predictor(seed), parts.load_reconstruction(seed)
         return cls(system, system.variants[name], seed, *models)
 
     def at_present(self, windows: Windows, faults: Sequence[str], recording: str) -> Present:

@@ -3,7 +3,7 @@
 import hashlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import lru_cache, partial
+from functools import partial
 from pathlib import Path
 
 import torch
@@ -30,6 +30,9 @@ from faultpath_paper.evidence.table import (
     write_evidence,
 )
 
+At = Callable[..., Present]
+"""What a variant gets and predicts at the present, of given windows and faults if not its own."""
+
 
 @torch.inference_mode()
 def measured(measurement: Measurement, recorded: RecordedWindows) -> Measured:
@@ -38,50 +41,44 @@ def measured(measurement: Measurement, recorded: RecordedWindows) -> Measured:
     A window's number does not depend on the windows beside it, to the bit, unless a fault on the
     history code exchanges them.
     """
-    values = _QUANTITIES[measurement.quantity](_subject(measurement), measurement, recorded.windows)
+    recording, own = measurement.recording, recorded.windows
+    subject = Subject.load(quadrotor(recording), measurement.subject, measurement.seed)
+
+    def present(windows: Windows = own, faults: Sequence[str] = measurement.faults) -> Present:
+        return subject.at_present(windows, faults, recording.name)
+
+    values = _QUANTITIES[measurement.quantity](present, own, measurement.seed)
     return Measured(recorded.scenes, recorded.steps, values.double().numpy())
 
 
-def _subject(measurement: Measurement) -> Subject:
-    return Subject.load(quadrotor(measurement.recording), measurement.subject, measurement.seed)
+def _position_error(present: At, windows: Windows, seed: int) -> Tensor:
+    return (present().positions()[..., -1] - windows.position[:, -1]).norm(dim=0)
 
 
-def _present(subject: Subject, measurement: Measurement, windows: Windows) -> Present:
-    return subject.at_present(windows, measurement.faults, measurement.recording.name)
-
-
-def _position_error(subject: Subject, measurement: Measurement, windows: Windows) -> Tensor:
-    last = _present(subject, measurement, windows).positions()[..., -1]
-    return (last - windows.position[:, -1]).norm(dim=0)
-
-
-def _position_response(subject: Subject, measurement: Measurement, windows: Windows) -> Tensor:
-    correct = measurement.model_copy(update={"faults": ()})
-    here = _present(subject, correct, windows).positions()[..., -1]
-    there = _present(subject, measurement, windows).positions()[..., -1]
+def _position_response(present: At, windows: Windows, seed: int) -> Tensor:
+    here, there = present(faults=()).positions()[..., -1], present().positions()[..., -1]
     return (there - here).norm(dim=0)
 
 
-def _shuffle_response(subject: Subject, measurement: Measurement, windows: Windows) -> Tensor:
-    shuffled = with_shuffled_history(windows, measurement.seed)
-    here = _present(subject, measurement, windows).positions()[..., -1]
-    there = _present(subject, measurement, shuffled).positions()[..., -1]
+def _shuffle_response(present: At, windows: Windows, seed: int) -> Tensor:
+    shuffled = with_shuffled_history(windows, seed)
+    here, there = present().positions()[..., -1], present(shuffled).positions()[..., -1]
     return (there - here).norm(dim=0)
 
 
-def _acceleration_error(subject: Subject, measurement: Measurement, windows: Windows) -> Tensor:
-    present = _present(subject, measurement, windows)
-    delivered = {channel: present[channel, "predictor.dynamics"] for channel in windows.calibration}
-    believed = replace(windows, mass_kg=delivered["mass"], thrust_scale=delivered["thrust_scale"])
+def _acceleration_error(present: At, windows: Windows, seed: int) -> Tensor:
+    moment = present()
+    mass, scale = (moment[channel, "predictor.dynamics"] for channel in windows.calibration)
+    believed = replace(windows, mass_kg=mass, thrust_scale=scale)
     nominal = _nominal(believed) - _nominal(windows)
-    return (nominal + _wind_term_difference(present, windows)).norm(dim=0)
+    return (nominal + _wind_term_difference(moment, windows)).norm(dim=0)
 
 
-def _wind_term_error(subject: Subject, measurement: Measurement, windows: Windows) -> Tensor:
-    return _wind_term_difference(_present(subject, measurement, windows), windows).norm(dim=0)
+def _wind_term_error(present: At, windows: Windows, seed: int) -> Tensor:
+    return _wind_term_difference(present(), windows).norm(dim=0)
 
 
-_QUANTITIES: Mapping[Quantity, Callable[[Subject, Measurement, Windows], Tensor]] = {
+_QUANTITIES: Mapping[Quantity, Callable[[At, Windows, int], Tensor]] = {
     "position-error": _position_error,
     "position-response": _position_response,
     "shuffle-response": _shuffle_response,
@@ -137,7 +134,7 @@ def measure(
     unique = tuple(dict.fromkeys(measurements))
     recordings = dict.fromkeys(measurement.recording for measurement in unique)
     flown = {recording: blocks(recording, scenes) for recording in recordings}
-    # One recording after the other: a worker keeps the windows of its current recording.
+    # One recording after the other: `recorded` keeps the windows of the last one.
     paths = {
         measurement: _path(measurement, flown[recording], folder)
         for recording in recordings
@@ -149,7 +146,7 @@ def measure(
         atomic.sweep(folder)
         waiting = {m: path for m, path in paths.items() if not path.exists()}
         flights = [
-            DataFile(block.rows(folder), partial(_fly, block, folder), len(block.scenes))
+            DataFile(block.rows(folder), partial(block.fly, folder), len(block.scenes))
             for recording in dict.fromkeys(measurement.recording for measurement in waiting)
             for block in flown[recording]
             if not block.rows(folder).exists()
@@ -161,17 +158,12 @@ def measure(
             for measurement, path in waiting.items()
         ]
         make_missing((flights, tables), workers, progress)
-    return EvidenceTable({m: read_evidence(paths[m]).values(m) for m in unique})
-
-
-@arithmetic()
-def _fly(block: Block, folder: Path) -> None:
-    block.fly(folder)
+    return EvidenceTable({m: read_evidence(paths[m])[m] for m in unique})
 
 
 @arithmetic()
 def _measure(measurement: Measurement, flown: Blocks, folder: Path, path: Path) -> None:
-    values = measured(measurement, _recorded(flown, folder))
+    values = measured(measurement, recorded(flown, folder))
     write_evidence(path, EvidenceTable({measurement: values}))
 
 
@@ -179,8 +171,3 @@ def _path(measurement: Measurement, flown: Blocks, folder: Path) -> Path:
     stems = tuple(block.stem for block in flown)
     content = repr((measurement.key(), stems, code_of("faultpath_paper")))
     return folder / f"{hashlib.sha256(content.encode()).hexdigest()[:24]}.measured.parquet"
-
-
-@lru_cache(maxsize=1)
-def _recorded(flown: Blocks, folder: Path) -> RecordedWindows:
-    return recorded(flown, folder)

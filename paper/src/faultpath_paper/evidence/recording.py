@@ -1,11 +1,12 @@
 """Recorded flights, kept in a folder block by block, and the windows cut from them."""
 
 import hashlib
-from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
+from faultpath_quadrotor.device import arithmetic
 from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.training.pool import code_of, joined, pool_path, store
 from faultpath_quadrotor.training.recorded import FlightData
@@ -37,6 +38,7 @@ class Block:
         """Return the path of the file."""
         return pool_path(folder, self.stem)
 
+    @arithmetic()
     def fly(self, folder: Path) -> None:
         """Fly the scenes and store the flights."""
         recording = self.recording
@@ -92,7 +94,8 @@ def blocks(recording: Recording, count: int | None) -> tuple[Block, ...]:
     return tuple(library_blocks)
 
 
-def recorded(blocks: Sequence[Block], folder: Path) -> RecordedWindows:
+@lru_cache(maxsize=1)
+def recorded(blocks: tuple[Block, ...], folder: Path) -> RecordedWindows:
     """Read stored blocks of one recording and cut their windows."""
     tensors = joined(block.rows(folder) for block in blocks)
     flown = FlightData.of(blocks[0].recording.name, tensors)

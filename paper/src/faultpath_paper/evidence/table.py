@@ -6,7 +6,7 @@ No tensors and no simulator here: `quantities` measures, and all others read the
 
 import hashlib
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, TypeAlias
@@ -107,24 +107,8 @@ class Measured:
         return self.scenes == other.scenes and np.array_equal(self.steps, other.steps)
 
 
-@dataclass(frozen=True, eq=False)
-class EvidenceTable:
-    """Everything that was measured, by measurement."""
-
-    entries: Mapping[Measurement, Measured]
-
-    def values(self, measurement: Measurement) -> Measured:
-        """Return what was measured; `KeyError` when the table does not have it."""
-        return self.entries[measurement]
-
-    def __contains__(self, measurement: object) -> bool:
-        return measurement in self.entries
-
-    def __iter__(self) -> Iterator[Measurement]:
-        return iter(self.entries)
-
-    def __len__(self) -> int:
-        return len(self.entries)
+EvidenceTable: TypeAlias = dict[Measurement, Measured]
+"""Everything that was measured."""
 
 
 _COLUMNS = {
@@ -147,8 +131,7 @@ def write_evidence(path: Path, table: EvidenceTable) -> None:
     columns repeat it for other readers of the file. `UserError` when it cannot be written.
     """
     rows: list[dict[str, Any]] = []
-    for measurement in table:
-        measured = table.values(measurement)
+    for measurement, measured in table.items():
         common = {
             "measurement": measurement.model_dump_json(),
             "recording": measurement.recording.name,

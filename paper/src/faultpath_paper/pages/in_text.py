@@ -96,17 +96,18 @@ WINDY_SUBJECTS = ("wm-a-wind/true-wind", table_3.WITHHELD, "wm-a-wind/zero-wind"
 
 NINE = tuple((method, condition) for method in table_4.METHODS for condition in table_4.CONDITIONS)
 """Methods and interfaces of Table IV."""
+MEASURED: tuple[Quantity, ...] = ("acceleration-error", "position-error")
 MECHANISM = tuple(
     error
-    for measure in (table_6.acceleration_error, table_6.position_error)
+    for quantity in MEASURED
     for method, condition in NINE
-    for error in table_6.by_seed(measure, method, condition)
+    for error in table_6.errors(quantity, method, condition)
 )
 """Errors of the analytic acceleration and of the full prediction, of each of the nine."""
 
 PAGE = Page(
     "text",
-    cells=(
+    more_cells=(
         *(noisy(model, error) for model in ("wm-a", "wm-a+dcc") for error in ERRORS),
         *(noisy_wind(variant) for variant in (table_3.GRU, table_3.ZERO)),
         *(WIND_UPDATED, WIND_FROZEN, CODE_UPDATED, CODE_FROZEN, WITHHELD_UPDATED, WITHHELD_FROZEN),
@@ -117,7 +118,7 @@ PAGE = Page(
         REFERENCE_PLANNER,
         *OTHER_PLANNERS.values(),
     ),
-    measurements=(
+    more_measurements=(
         *(response(model, probe) for model in ("wm-a", "wm-a+dcc") for probe in PROBES),
         *map(windy_error, WINDY_SUBJECTS),
         *MECHANISM,

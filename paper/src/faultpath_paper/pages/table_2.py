@@ -4,14 +4,7 @@ from faultpath.report.sentences import wording
 from faultpath_paper.cells import SEEDS, Cell, Printed, calibration, of_seed, published
 from faultpath_paper.entries import EntryGroup, centimetres, published_contrasts
 from faultpath_paper.evidence.table import Measurement
-from faultpath_paper.page import (
-    Page,
-    Rows,
-    TableRow,
-    differences,
-    rates,
-    table,
-)
+from faultpath_paper.page import Page, Rows, TableRow, differences, rates, table
 from faultpath_paper.pages.table_1 import COMMON, STILL
 from faultpath_paper.quantities.windows import quantile
 
@@ -95,9 +88,7 @@ PAGE = Page(
             ),
             TableRow("Error, 90th percentile (cm)", tuple(map(_tail, ERRORS))),
             rates(
-                "Success (%)",
-                (of_seed(cell("wm-a", error)) for error in ERRORS),
-                _FIRST["success"],
+                "Success (%)", (of_seed(cell("wm-a", error)) for error in ERRORS), _FIRST["success"]
             ),
         ),
     ),

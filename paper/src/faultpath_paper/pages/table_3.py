@@ -92,11 +92,7 @@ def _won(row: Cell, paper: int | list[int]) -> EntryGroup:
 PAGE = Page(
     "table-3",
     (
-        table(
-            "table-3",
-            *_levels("free-space"),
-            *_levels("obstacles"),
-        ),
+        table("table-3", *_levels("free-space"), *_levels("obstacles")),
         table(
             "table-3b",
             _unmet(TRAJECTORY, "trajectory-GRU_seeds"),

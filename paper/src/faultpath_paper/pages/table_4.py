@@ -6,21 +6,8 @@ from typing import Any
 from faultpath.report.sentences import wording
 from faultpath_paper.cells import SEEDS, Cell, Printed, Setting, calibration, published
 from faultpath_paper.entries import EntryGroup, bracket, of_quantity, published_contrasts
-from faultpath_paper.page import (
-    Columns,
-    Page,
-    Rows,
-    TableRow,
-    differences,
-    rates,
-    table,
-)
-from faultpath_paper.quantities.differences import (
-    Effect,
-    combined,
-    succeeded,
-    terminal_distance,
-)
+from faultpath_paper.page import Columns, Page, Rows, TableRow, differences, rates, table
+from faultpath_paper.quantities.differences import Effect, combined, succeeded, terminal_distance
 from faultpath_paper.results import Quantity
 
 WINDY = Setting(wind="L3")

@@ -1,11 +1,9 @@
 """Table VI: how reconstruction bias and calibration error compensate, and the negative offset."""
 
-from collections.abc import Callable
-
 from faultpath.report.sentences import wording
 from faultpath_paper.cells import SEEDS, Cell, calibration, published
 from faultpath_paper.entries import BLANK, EntryGroup, PublishedContrast, difference, measured
-from faultpath_paper.evidence.table import Measurement
+from faultpath_paper.evidence.table import Measurement, Quantity
 from faultpath_paper.page import Columns, Page, TableRow, rates, table
 from faultpath_paper.pages.table_1 import recording
 from faultpath_paper.pages.table_4 import CONDITIONS, ERROR, METHODS, NAMES, WINDY
@@ -29,42 +27,20 @@ WINDOWS = recording(Cell(WINDY, "gru"))
 """Common windows: recorded with the reference reconstruction of seed 0 under correct inputs."""
 
 
-def seeds(method: str) -> tuple[int, ...]:
-    """Return the seeds of a method: the observer learns nothing."""
-    return (0,) if method == "dob" else SEEDS
+def errors(quantity: Quantity, method: str, interface: str) -> tuple[Measurement, ...]:
+    """Return an error of a method on an interface, for each of its seeds.
 
-
-def acceleration_error(method: str, interface: str, seed: int) -> Measurement:
-    """Return the analytic acceleration error of a method."""
-    return _measure("acceleration-error", method, interface, seed)
-
-
-def wind_term_error(method: str, interface: str, seed: int) -> Measurement:
-    """Return the error of the wind's part of that acceleration alone."""
-    return _measure("wind-term-error", method, interface, seed)
-
-
-def position_error(method: str, interface: str, seed: int) -> Measurement:
-    """Return the 20-step position error of the predictor with a method's wind."""
-    return _measure("position-error", method, interface, seed)
-
-
-def by_seed(
-    measure: Callable[[str, str, int], Measurement], method: str, interface: str
-) -> tuple[Measurement, ...]:
-    """Return one measurement for each seed of a method."""
-    return tuple(measure(method, interface, seed) for seed in seeds(method))
-
-
-def _measure(quantity: str, method: str, interface: str, seed: int) -> Measurement:
-    return Measurement.model_validate(
-        {
-            "recording": WINDOWS,
-            "quantity": quantity,
-            "subject": method,
-            "seed": seed,
-            "faults": INTERFACES[interface],
-        }
+    The observer learns nothing: it has one.
+    """
+    return tuple(
+        Measurement(
+            recording=WINDOWS,
+            quantity=quantity,
+            subject=method,
+            seed=seed,
+            faults=INTERFACES[interface],
+        )
+        for seed in ((0,) if method == "dob" else SEEDS)
     )
 
 
@@ -89,14 +65,14 @@ def paper_negative(method: str, condition: str) -> float:
 
 def _accelerations(method: str) -> TableRow:
     groups = (
-        measured(by_seed(acceleration_error, method, interface), paper)
+        measured(errors("acceleration-error", method, interface), paper)
         for interface, paper in zip(INTERFACES, _ERRORS[NAMES[method]], strict=True)
     )
     return TableRow(NAMES[method], tuple(groups))
 
 
 def _wind_term(interface: str, key: str) -> EntryGroup:
-    return measured(by_seed(wind_term_error, "gru", interface), _WIND_TERM[key])
+    return measured(errors("wind-term-error", "gru", interface), _WIND_TERM[key])
 
 
 def _negative_rates(method: str) -> TableRow:

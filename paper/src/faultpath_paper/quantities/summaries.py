@@ -12,11 +12,7 @@ from faultpath.system import Status
 from faultpath_paper.cells import Cell, of_seed
 from faultpath_paper.pages import figure_3
 from faultpath_paper.quantities.differences import contrast, joint
-from faultpath_paper.quantities.windows import (
-    Subject,
-    difference_of_quantiles,
-    mean_of_medians,
-)
+from faultpath_paper.quantities.windows import Subject, difference_of_quantiles, mean_of_medians
 from faultpath_paper.results import NotRun, Quantity, Results, Undecidable, decisive
 
 Floats = NDArray[np.float64]

@@ -7,7 +7,6 @@ from functools import lru_cache
 from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from faultpath.stats.contrast import Contrast, weighted_sum
 from faultpath_paper.evidence.table import QUANTITIES, EvidenceTable, Measured, Measurement
@@ -79,7 +78,10 @@ def quantiles(results: Results, q: float, *subjects: Subject) -> list[Contrast]:
     A subject of one seed stands beside all seeds of the others. `NotRun` when a subject was not
     measured, or on other windows.
     """
-    several = [_run(results, subject) for subject in subjects]
+    several = [tuple(m for m in subject if m in results.evidence) for subject in subjects]
+    for run, subject in zip(several, subjects, strict=True):
+        if not run:
+            results.measured(subject[0])  # says what is missing
     fixed = [len(subject) == 1 for subject in subjects]
     seeds = [{m.seed for m in run} for run, one in zip(several, fixed, strict=True) if not one]
     kept = [
@@ -88,7 +90,12 @@ def quantiles(results: Results, q: float, *subjects: Subject) -> list[Contrast]:
     ]
     if not all(kept):
         raise NotRun(f"a seed that all measurements beside {subjects[0][0].subject} share")
-    _check_windows(results, [m for subject in kept for m in subject])
+    windows = results.measured(kept[0][0])
+    if not len(windows):
+        raise NotRun(f"a window of {kept[0][0].subject}")
+    for measurement in (m for subject in kept for m in subject):
+        if not results.measured(measurement).same_windows(windows):
+            raise NotRun(f"{measurement.subject} on the windows of {kept[0][0].subject}")
     return [_mean(results.evidence, subject, q) for subject in kept]
 
 
@@ -112,35 +119,16 @@ def mean_of_medians(results: Results, by_seed: Iterable[Measurement]) -> float:
     return float(np.mean(medians))
 
 
-def _run(results: Results, subject: Subject) -> Subject:
-    run = tuple(measurement for measurement in subject if measurement in results.evidence)
-    if not run:
-        results.measured(subject[0])  # says what is missing
-    return run
-
-
-def _check_windows(results: Results, measurements: list[Measurement]) -> None:
-    first = results.measured(measurements[0])
-    if not len(first):
-        raise NotRun(f"a window of {measurements[0].subject}")
-    for measurement in measurements:
-        if not results.measured(measurement).same_windows(first):
-            raise NotRun(f"{measurement.subject} on the windows of {measurements[0].subject}")
-
-
-@lru_cache(maxsize=512)
 def _mean(evidence: EvidenceTable, subject: Subject, q: float) -> Contrast:
-    effects = [_quantile(evidence, measurement, q) for measurement in subject]
+    effects = [_quantile(evidence[m], q, QUANTITIES[m.quantity]) for m in subject]
     mean = weighted_sum([1 / len(effects)] * len(effects), effects)
     per_seed = tuple(effect.value for effect in effects)
     return replace(mean, per_seed=per_seed, n_seeds=len(effects))
 
 
 @lru_cache(maxsize=512)
-def _quantile(evidence: EvidenceTable, measurement: Measurement, q: float) -> Contrast:
-    measured: Measured = evidence.values(measurement)
-    values: NDArray[np.float64] = measured.values
-    return _resampled(measured.scenes).value(values, q, QUANTITIES[measurement.quantity])
+def _quantile(measured: Measured, q: float, unit: str) -> Contrast:
+    return _resampled(measured.scenes).value(measured.values, q, unit)
 
 
 @lru_cache(maxsize=8)

@@ -151,10 +151,7 @@ def sizes(ledger: Ledger) -> str:
     )
 
 
-KINDS = {
-    "finding": "findings",
-    "platform": "properties that the simulator was matched to",
-}
+KINDS = {"finding": "findings", "platform": "properties that the simulator was matched to"}
 """Names of the kinds of claims: findings are tested, properties were matched beforehand."""
 KIND = {"finding": "finding", "platform": "matched property"}
 """The same of one claim."""

@@ -11,7 +11,6 @@ from typing_extensions import override
 
 from faultpath.loop import Outputs, Port
 from faultpath_quadrotor.batching import Delivered, LaneModule
-from faultpath_quadrotor.choices import FILTERS, Fixes
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.estimators.kalman import (
     Belief,
@@ -23,7 +22,7 @@ from faultpath_quadrotor.estimators.kalman import (
     predicted,
 )
 from faultpath_quadrotor.estimators.protocol import STATE_SOURCES, Estimator
-from faultpath_quadrotor.estimators.sensors import SENSORS, sensors
+from faultpath_quadrotor.estimators.sensors import SENSORS
 
 AT = "filter"
 _INERTIAL, _AIDING = SENSORS[:2], SENSORS[2:]
@@ -106,11 +105,3 @@ class ErrorStateFilter(LaneModule, Estimator):
             due["position_fix"] = read["position_fix"]
         belief, innovations = corrected(predicted(belief, by, self.trust), due, self.trust)
         return Filtered(belief, tuple(later), aiding[1:], tuple(innovations))
-
-
-def filtering(
-    name: str, fixes: Fixes = Fixes.OPTICAL, device: torch.device = CPU
-) -> ErrorStateFilter:
-    """Return a shipped filter."""
-    tuning = FILTERS[name]
-    return ErrorStateFilter(Trust(sensors(fixes), tuning.biases, tuning.doubt), device)

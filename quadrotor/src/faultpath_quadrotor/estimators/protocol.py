@@ -22,7 +22,8 @@ SOURCES = CALIBRATION_SOURCES | STATE_SOURCES
 
 
 class Estimator(Module):
-    """Turns what the plant senses into what the controller knows of the vehicle.
+    """Turns what the plant senses into what the controller knows of the vehicle, but not the wind:
+    that is a `Reconstruction`'s.
 
     It writes some of the sources in `SOURCES`, `[B, ...]` each; the exact estimator writes the
     rest. It may read any channel of the interface, and the raw sensors of `estimators.sensors`.

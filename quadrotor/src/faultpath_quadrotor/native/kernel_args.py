@@ -46,14 +46,13 @@ class Lent:
         return ctypes.c_void_p(self.tensor.data_ptr())
 
 
-def as_kernel_argument(
-    name: str, tensor: Tensor, *shape: int, dtype: torch.dtype = torch.float32
-) -> Lent:
-    """Return `tensor` for a kernel that takes `shape` and `dtype` for granted.
+def lend(name: str, tensor: Tensor, *shape: int, dtype: torch.dtype = torch.float32) -> Lent:
+    """Return `tensor`, copied where it is not contiguous, for a kernel that takes `shape` and
+    `dtype` for granted.
 
     Raises:
-        ValueError: It has another shape or dtype, is not in the host's memory or not contiguous, or
-            a gradient should flow through it; names what is wrong and what to do.
+        ValueError: It has another shape or dtype, is not in the host's memory or not dense, or a
+            gradient should flow through it; names what is wrong and what to do.
     """
     wrong = (
         f"has the shape {list(tensor.shape)}, not {list(shape)}: give it that shape"
@@ -62,8 +61,8 @@ def as_kernel_argument(
         if tensor.dtype != dtype
         else f"is on {tensor.device}, not on the CPU: move it"
         if not host_readable(tensor.device)
-        else "is not contiguous: call `contiguous()`"
-        if tensor.layout is not torch.strided or not tensor.is_contiguous() or tensor.is_neg()
+        else "is not dense: call `to_dense()`"
+        if tensor.layout is not torch.strided
         else "should have a gradient, which no kernel passes on: detach it, or roll out in torch"
         if tensor.requires_grad and torch.is_grad_enabled()
         else ""
@@ -72,7 +71,12 @@ def as_kernel_argument(
         raise ValueError(
             f"compiled kernel: '{name}' {wrong}; FAULTPATH_KERNELS=portable runs without kernels"
         )
-    return Lent(tensor)
+    return Lent(tensor.contiguous().resolve_neg())
+
+
+def output(*shape: int, dtype: torch.dtype = torch.float32) -> Lent:
+    """Return memory that a kernel fills."""
+    return Lent(torch.empty(shape, dtype=dtype))
 
 
 class Block(ctypes.Structure):

@@ -60,26 +60,23 @@ class ClearanceModel(nn.Module):
 
     def __init__(self) -> None:
         super().__init__()
-        with torch.random.fork_rng(devices=()):  # layers draw from the process's state when made
-            self._build()
-
-    def _build(self) -> None:
         first, second, third = _CHANNELS
-        self.encoder = nn.Sequential(
-            nn.Conv2d(2, first, 5, stride=2, padding=2),
-            nn.ReLU(),
-            nn.Conv2d(first, second, 3, stride=2, padding=1),
-            nn.ReLU(),
-            nn.Conv2d(second, third, 3, stride=2, padding=1),
-            nn.ReLU(),
-            nn.Flatten(),
-            nn.Linear(third * 5 * 8, _DENSE),
-            nn.ReLU(),
-            nn.Linear(_DENSE, CODE),
-        )
         widths = (9, HIDDEN, HIDDEN, 1)
         self._shapes = [(after - (after == HIDDEN), before) for before, after in pairwise(widths)]
-        self.layers = nn.ModuleList(nn.Linear(CODE, rows * cols) for rows, cols in self._shapes)
+        with torch.random.fork_rng(devices=()):  # layers draw from the process's state when made
+            self.encoder = nn.Sequential(
+                nn.Conv2d(2, first, 5, stride=2, padding=2),
+                nn.ReLU(),
+                nn.Conv2d(first, second, 3, stride=2, padding=1),
+                nn.ReLU(),
+                nn.Conv2d(second, third, 3, stride=2, padding=1),
+                nn.ReLU(),
+                nn.Flatten(),
+                nn.Linear(third * 5 * 8, _DENSE),
+                nn.ReLU(),
+                nn.Linear(_DENSE, CODE),
+            )
+            self.layers = nn.ModuleList(nn.Linear(CODE, rows * cols) for rows, cols in self._shapes)
 
     def initialise(self, generator: torch.Generator) -> None:
         """Draw fresh weights.

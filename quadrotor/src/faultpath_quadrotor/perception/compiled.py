@@ -5,22 +5,10 @@ import ctypes
 import torch
 from torch import Tensor, nn
 
-from faultpath_quadrotor.native.kernel_args import (
-    BLOCK,
-    Block,
-    Lent,
-    as_kernel_argument,
-    fields,
-    pack,
-)
+from faultpath_quadrotor.native.kernel_args import BLOCK, Block, Lent, fields, lend, output, pack
 from faultpath_quadrotor.native.library import Kernels
 from faultpath_quadrotor.perception.camera import FOCAL_PX, HEIGHT, RANGE_M, WIDTH, slopes
-from faultpath_quadrotor.perception.clearance import (
-    CODE,
-    INVERSE_SCALE,
-    NEAREST_M,
-    ClearanceModel,
-)
+from faultpath_quadrotor.perception.clearance import CODE, INVERSE_SCALE, NEAREST_M, ClearanceModel
 from faultpath_quadrotor.perception.labels import HIGHEST_M, LOWEST_M
 
 ENCODER_SHAPES = ((16, 2, 5, 5), (32, 16, 3, 3), (48, 32, 3, 3), (128, 48 * 5 * 8), (64, 128))
@@ -49,8 +37,8 @@ class CompiledEncoder:
         weights = [layer.weight.detach() for layer in layers]
         biases = [layer.bias.detach() for layer in layers if layer.bias is not None]
         for i, (shape, *parts) in enumerate(zip(ENCODER_SHAPES, weights, biases, strict=True)):
-            as_kernel_argument(f"weights of layer {i}", parts[0].contiguous(), *shape)
-            as_kernel_argument(f"biases of layer {i}", parts[1].contiguous(), shape[0])
+            lend(f"weights of layer {i}", parts[0], *shape)
+            lend(f"biases of layer {i}", parts[1], shape[0])
         *convolutions, dense, last = weights
         # The kernel's features have their channels last, the model's flattened ones first.
         turned = dense.unflatten(1, (ENCODER_SHAPES[2][0], -1)).transpose(1, 2).flatten(1)
@@ -61,15 +49,10 @@ class CompiledEncoder:
 
     def __call__(self, depth: Tensor) -> Tensor:
         """Return the codes `[64, S]` of images `[S, 36, 64]`, m."""
-        codes = torch.empty(CODE, len(depth))
-        self._kernels.call(
-            "faultpath_encode",
-            self._table,
-            as_kernel_argument("depth", depth.float().contiguous(), len(depth), HEIGHT, WIDTH),
-            len(depth),
-            as_kernel_argument("codes", codes, CODE, len(depth)),
-        )
-        return codes
+        codes = output(CODE, len(depth))
+        images = lend("depth", depth.float(), len(depth), HEIGHT, WIDTH)
+        self._kernels.call("faultpath_encode", self._table, images, len(depth), codes)
+        return codes.tensor
 
 
 FEATURES, HIDDEN = 8, 47
@@ -101,7 +84,7 @@ class CompiledClearance:
         for (layer, _), (outputs, inputs) in zip(model.makers(), QUERY_SHAPES, strict=True):
             # A column for each number of the code, and what is there without any.
             maker = torch.cat((layer.weight, layer.bias[:, None]), 1).detach().contiguous()
-            as_kernel_argument("makers", maker, outputs * inputs, CODE + 1)
+            lend("makers", maker, outputs * inputs, CODE + 1)
             # Numbers stand in the order of `Query`: hidden layers in blocks of outputs, biases
             # first, padded with zeros; the last layer as it is.
             whole = maker.unflatten(0, (outputs, inputs))
@@ -109,8 +92,8 @@ class CompiledClearance:
                 whole = pack(whole.roll(1, dims=1), BLOCK)
             rows.append(whole.reshape(-1, CODE + 1))
         numbers = torch.cat(rows).T.contiguous()
-        self._makers = as_kernel_argument("makers", numbers[:-1].contiguous(), CODE, _NUMBERS)
-        self._base = as_kernel_argument("base", numbers[-1].contiguous(), _NUMBERS)
+        self._makers = lend("makers", numbers[:-1], CODE, _NUMBERS)
+        self._base = lend("base", numbers[-1], _NUMBERS)
 
     def __call__(self, codes: Tensor, eye: Tensor, axes: Tensor, points: Tensor) -> Tensor:
         """Return the clearance `[S, N]` at points `[3, S, N]` of the world frame, m.
@@ -119,18 +102,17 @@ class CompiledClearance:
         `[S, 3, 3]`.
         """
         _, scenes, count = points.shape
-        clearance = points.new_empty(scenes, count)
+        clearance = output(scenes, count)
         self._kernels.call(
             "faultpath_clearance",
             *(self._bounds, self._makers, self._base),
-            as_kernel_argument("codes", codes.contiguous(), CODE, scenes),
-            as_kernel_argument("position", eye.contiguous(), scenes, 3),
-            as_kernel_argument("rotation", axes.contiguous(), scenes, 3, 3),
-            as_kernel_argument("points", points.contiguous(), 3, scenes, count),
-            *(scenes, count),
-            as_kernel_argument("clearance", clearance, scenes, count),
+            lend("codes", codes, CODE, scenes),
+            lend("position", eye, scenes, 3),
+            lend("rotation", axes, scenes, 3, 3),
+            lend("points", points, 3, scenes, count),
+            *(scenes, count, clearance),
         )
-        return clearance
+        return clearance.tensor
 
 
 _SOLID = 12
@@ -162,31 +144,27 @@ class CompiledRenderer:
         """
         self._kernels = kernels
         _, count, scenes = solids.shape
-        laid = solids.permute(2, 1, 0).contiguous()
-        self._solids = as_kernel_argument(
-            "solids", laid, scenes, count, _SOLID, dtype=torch.float64
-        )
-        left, up = (slope.float().contiguous() for slope in slopes())
+        laid = solids.permute(2, 1, 0)
+        self._solids = lend("solids", laid, scenes, count, _SOLID, dtype=torch.float64)
+        left, up = (slope.float() for slope in slopes())
         self._camera = _Camera(
             *(HEIGHT, WIDTH),
-            as_kernel_argument("left", left, WIDTH),
-            as_kernel_argument("up", up, HEIGHT),
-            as_kernel_argument("planes", planes.contiguous(), 6, 4, dtype=torch.float64),
+            lend("left", left, WIDTH),
+            lend("up", up, HEIGHT),
+            lend("planes", planes, 6, 4, dtype=torch.float64),
             RANGE_M,
         )
 
     def render(self, position: Tensor, rotation: Tensor) -> Tensor:
         """Return `[B, 36, 64]` as cameras at `[3, B]` of attitudes `[3, 3, B]` see it, float64."""
         scenes, count, _ = self._solids.tensor.shape
-        images = torch.empty(scenes, HEIGHT, WIDTH)
-        at = position.expand(3, scenes).contiguous()
-        turned = rotation.expand(3, 3, scenes).contiguous()
+        images = output(scenes, HEIGHT, WIDTH)
+        at, turned = position.expand(3, scenes), rotation.expand(3, 3, scenes)
         self._kernels.call(
             "faultpath_render",
             *(self._camera, self._solids, count, scenes),
-            as_kernel_argument("position", at, 3, scenes, dtype=torch.float64),
-            as_kernel_argument("rotation", turned, 3, 3, scenes, dtype=torch.float64),
-            scenes,
-            as_kernel_argument("images", images, scenes, HEIGHT, WIDTH),
+            lend("position", at, 3, scenes, dtype=torch.float64),
+            lend("rotation", turned, 3, 3, scenes, dtype=torch.float64),
+            *(scenes, images),
         )
-        return images
+        return images.tensor

@@ -24,9 +24,9 @@ def clearance_query(measure: Measure) -> Query:
     def answer(predicted: Predicted) -> Tensor:
         first = predicted.rollouts[0].positions
         clearance = first.new_zeros(predicted.count, *first.shape[2:])
-        for part, rollout in zip(predicted.parts, predicted.rollouts, strict=True):
+        for chunk, rollout in zip(predicted.chunks, predicted.rollouts, strict=True):
             points = rollout.positions
-            clearance[part.rows] = measure(points.flatten(2), part).view(points.shape[1:])
+            clearance[chunk.rows] = measure(points.flatten(2), chunk).view(points.shape[1:])
         return clearance
 
     return Query(answer)

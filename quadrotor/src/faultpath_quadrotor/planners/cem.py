@@ -6,8 +6,8 @@ import torch
 from torch import Tensor
 from typing_extensions import override
 
+from faultpath_quadrotor.planners.base import Planner, Search, mean
 from faultpath_quadrotor.planners.costs import NavigationCost, Scored
-from faultpath_quadrotor.planners.mppi import Planner, Search, mean
 from faultpath_quadrotor.planners.sampler import AutoregressiveSampler, bound, scales
 
 

@@ -9,7 +9,7 @@ from torch import Tensor
 
 from faultpath.plugin.system import Frozen
 from faultpath_quadrotor import native
-from faultpath_quadrotor.native.kernel_args import Block, as_kernel_argument, covered, fields
+from faultpath_quadrotor.native.kernel_args import Block, covered, fields, lend, output
 from faultpath_quadrotor.predictors.rollout import Rollout
 from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M
 
@@ -56,15 +56,6 @@ def _norm(vector: Tensor) -> Tensor:
     return vector.square().sum(0).sqrt_()
 
 
-class _Weights(Block):
-    """`Weights` of `costs.cpp`."""
-
-    _fields_ = fields(
-        ctypes.c_float,
-        "running goal risk hit margin_m radius_m speed v_max_mps heading rate_effort thrust_effort",
-    )
-
-
 class NavigationCost:
     """The weighted sum of all terms."""
 
@@ -73,6 +64,40 @@ class NavigationCost:
 
     def __call__(self, scored: Scored) -> Tensor:
         """Return the cost `[S, K]`."""
+        compiled = self._compiled(scored)  # None: no kernel for this call
+        return self.reference(scored) if compiled is None else compiled
+
+    def reference(self, scored: Scored) -> Tensor:
+        """Return the cost `[S, K]` by its formula, which the kernel repeats to rounding."""
+        w, rollout = self.weights, scored.rollout
+        at_end = _norm(rollout.final.position - scored.goal[..., None])
+        on_way = _norm(rollout.positions - scored.goal[..., None, None]).mean(1)
+        free = scored.clearance - COLLISION_RADIUS_M
+        close = (1 - free / w.margin_m).clamp_(0, 1).square_().mean(1)
+        hits = (free < 0).to(free.dtype).mean(1)
+        too_fast = (_norm(rollout.velocities) - w.v_max_mps).clamp_(min=0).square_().mean(1)
+        turning = scored.commands[:, 1:].square().sum(1).mean(0)
+        hover = scored.hover[:, None]
+        pushing = (scored.commands[:, 0] - hover).square_().mean(0) / hover.square()
+
+        goal = torch.lerp(at_end, on_way, w.running).mul_(w.goal)
+        risk = close.mul_(w.risk).add_(hits, alpha=w.hit)
+        speed = too_fast.mul_(w.speed)
+        heading = self._heading(scored).mul_(w.heading)
+        effort = turning.mul_(w.rate_effort)
+        # In this order, the last in one step: it decides the last bits.
+        return (goal + risk + speed + heading + effort).add_(pushing, alpha=w.thrust_effort)
+
+    def _heading(self, scored: Scored) -> Tensor:
+        """One minus the cosine between the body's x axis and the direction of travel, seen from
+        above, at the end of the horizon: yaw follows the direction of travel."""
+        final = scored.rollout.final
+        forward, travel = final.rotation[:2, 0], final.velocity[:2]
+        along = (forward * travel).sum(0)
+        scale = (forward.square().sum(0) * travel.square().sum(0)).add_(1e-4).rsqrt_()
+        return torch.addcmul(torch.ones_like(along), along, scale, value=-1)
+
+    def _compiled(self, scored: Scored) -> Tensor | None:
         rollout, commands = scored.rollout, scored.commands
         steps, _, scenes, count = commands.shape
         moved = (3, scenes, steps, count)
@@ -87,43 +112,23 @@ class NavigationCost:
         }
         built = native.kernels_for(*(value for value, _ in inputs.values()))
         if built is None or not (steps and native.whole_vectors(count)):
-            return self._portable(scored)
+            return None
         if not (covered(self, NavigationCost) and covered(self.weights, CostWeights)):
-            return self._portable(scored)
-        costs = commands.new_empty(scenes, count)
+            return None
+        costs = output(scenes, count)
         built.call(
             "faultpath_cost",
             _Weights(radius_m=COLLISION_RADIUS_M, **self.weights.model_dump()),
-            *(
-                as_kernel_argument(name, value.contiguous(), *shape)
-                for name, (value, shape) in inputs.items()
-            ),
-            *(steps, scenes, count),
-            as_kernel_argument("costs", costs, scenes, count),
+            *(lend(name, value, *shape) for name, (value, shape) in inputs.items()),
+            *(steps, scenes, count, costs),
         )
-        return costs
+        return costs.tensor
 
-    def _portable(self, scored: Scored) -> Tensor:
-        w = self.weights
-        end = _norm(scored.rollout.final.position - scored.goal[..., None])
-        way = _norm(scored.rollout.positions - scored.goal[..., None, None]).mean(1)
-        cost = torch.lerp(end, way, w.running).mul_(w.goal)
-        free = scored.clearance - COLLISION_RADIUS_M
-        risk = (1 - free / w.margin_m).clamp_(0, 1).square_().mean(1).mul_(w.risk)
-        cost += risk.add_((free < 0).to(free.dtype).mean(1), alpha=w.hit)
-        speed = _norm(scored.rollout.velocities)
-        cost += (speed - w.v_max_mps).clamp_(min=0).square_().mean(1).mul_(w.speed)
-        cost += self._heading(scored).mul_(w.heading)
-        cost += scored.commands[:, 1:].square().sum(1).mean(0).mul_(w.rate_effort)
-        hover = scored.hover[:, None]
-        thrust = (scored.commands[:, 0] - hover).square_().mean(0) / hover.square()
-        return cost.add_(thrust, alpha=w.thrust_effort)
 
-    def _heading(self, scored: Scored) -> Tensor:
-        """One minus the cosine between the body's x axis and the direction of travel, seen from
-        above, at the end of the horizon: yaw follows the direction of travel."""
-        final = scored.rollout.final
-        forward, travel = final.rotation[:2, 0], final.velocity[:2]
-        along = (forward * travel).sum(0)
-        scale = (forward.square().sum(0) * travel.square().sum(0)).add_(1e-4).rsqrt_()
-        return torch.addcmul(torch.ones_like(along), along, scale, value=-1)
+class _Weights(Block):
+    """`Weights` of `costs.cpp`."""
+
+    _fields_ = fields(
+        ctypes.c_float,
+        "running goal risk hit margin_m radius_m speed v_max_mps heading rate_effort thrust_effort",
+    )

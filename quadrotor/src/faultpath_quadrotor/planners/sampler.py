@@ -11,7 +11,7 @@ from typing_extensions import override
 
 from faultpath.plugin.system import Frozen, generator, key, words
 from faultpath_quadrotor import native
-from faultpath_quadrotor.native.kernel_args import as_kernel_argument
+from faultpath_quadrotor.native.kernel_args import lend, output
 from faultpath_quadrotor.vehicle import RATE_LIMIT_RADPS
 
 
@@ -59,21 +59,20 @@ class AutoregressiveSampler:
         purpose = f"planner/{iteration}" if iteration else "planner"
         rho = self.settings.correlation
         fresh = math.sqrt(1 - rho**2)
-        noise = torch.empty(horizon, 4, len(scenes), candidates)
+        shape = horizon, 4, len(scenes), candidates
         built = native.kernels()
         if built is not None and native.whole_vectors(candidates):
             drawn = [words(key(purpose, scene, seed)) for scene in scenes]
             keys = torch.from_numpy(np.array(drawn, dtype=np.uint64).reshape(-1, 2))
-            scratch = torch.empty(4 * horizon * candidates, dtype=torch.int32)
+            scratch, filled = output(4 * horizon * candidates, dtype=torch.int32), output(*shape)
             built.call(
                 "faultpath_noise",
-                as_kernel_argument("keys", keys, len(scenes), 2, dtype=torch.uint64),
+                lend("keys", keys, len(scenes), 2, dtype=torch.uint64),
                 *(step, horizon, len(scenes), candidates),
-                (ctypes.c_float * 2)(rho, fresh),
-                as_kernel_argument("scratch", scratch, len(scratch), dtype=torch.int32),
-                as_kernel_argument("noise", noise, *noise.shape),
+                *((ctypes.c_float * 2)(rho, fresh), scratch, filled),
             )
-            return noise
+            return filled.tensor
+        noise = torch.empty(shape)
         for i, scene in enumerate(scenes):
             draws = generator(purpose, scene, seed, step)
             normals = standard_normals(draws, horizon * 4 * candidates)

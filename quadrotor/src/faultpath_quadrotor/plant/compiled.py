@@ -7,9 +7,9 @@ from dataclasses import replace
 import torch
 from torch import Tensor
 
-from faultpath_quadrotor.native.kernel_args import Block, Lent, as_kernel_argument, fields
+from faultpath_quadrotor.native.kernel_args import Block, Lent, fields, lend, output
 from faultpath_quadrotor.native.library import Kernels
-from faultpath_quadrotor.plant.protocol import Contact, PlantState, TrialProgress
+from faultpath_quadrotor.plant.protocol import CONTACT_EVERY, PlantState, Standing
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import (
     COLLECTIVE_MAX_N,
@@ -77,10 +77,7 @@ class CompiledPlant:
         """Take the vehicles: `airframes` `[15, L]`, rows as `Airframe` of `plant.hpp`."""
         self._kernels = kernels
         lanes = airframes.shape[-1]
-        whole = airframes.contiguous()
-        self._airframes = as_kernel_argument(
-            "airframes", whole, _AIRFRAME, lanes, dtype=torch.float64
-        )
+        self._airframes = lend("airframes", airframes, _AIRFRAME, lanes, dtype=torch.float64)
         gravity_kick = -GRAVITY_MPS2 * 0.5 * dt_s
         limits = (RATE_GAIN_PER_S, RATE_LIMIT_RADPS, COLLECTIVE_MAX_N, MOTOR_THRUST_MAX_N)
         self._law = _Law(dt_s, gravity_kick, *limits)
@@ -91,47 +88,43 @@ class CompiledPlant:
         """Advance one step for each of `winds`; see `Plant.advance`. Batches may be broadcast."""
         lanes = self._airframes.tensor.shape[1]
         before = zip(_BODY.items(), plant_state.parts, strict=True)
-        ends = torch.empty(sum(_ROWS), lanes, dtype=torch.float64)
+        ends = output(sum(_ROWS), lanes, dtype=torch.float64)
         self._kernels.call(
             "faultpath_fly",
             *(self._law, self._airframes),
             _Before(*(_ready(name, part, *shape, lanes) for (name, shape), part in before)),
             _ready("command", command, 4, lanes),
             _ready("winds", winds, len(winds), 3, lanes),
-            *(len(winds), lanes, trial),
-            as_kernel_argument("ends", ends, sum(_ROWS), lanes, dtype=torch.float64),
+            *(len(winds), lanes, trial, ends),
         )
-        parts = zip(ends.split(_ROWS), _BODY.values(), strict=True)
+        parts = zip(ends.tensor.split(_ROWS), _BODY.values(), strict=True)
         *state, thrusts = (part.view(*shape, lanes) for part, shape in parts)
         return PlantState(State(*state), thrusts)
 
     def fly(
-        self,
-        plant_state: PlantState,
-        command: Tensor,
-        winds: Tensor,
-        contact: Contact,
-        progress: TrialProgress,
-        steps: int,
-    ) -> tuple[PlantState, TrialProgress]:
+        self, plant_state: PlantState, command: Tensor, winds: Tensor, standing: Standing
+    ) -> tuple[PlantState, Standing]:
         """Advance with contact checks between the steps; see `Plant.fly`."""
-        lanes, solids = self._airframes.tensor.shape[1], contact.solids
-        standing = {name: getattr(progress, name).clone() for name in _STANDING}
+        lanes, contact, progress = (
+            self._airframes.tensor.shape[1],
+            standing.contact,
+            standing.progress,
+        )
+        ends = {  # copies, which the kernel changes
+            name: lend(name, getattr(progress, name).clone(), lanes, dtype=dtype)
+            for name, dtype in _STANDING.items()
+        }
         trial = _Trial(
-            as_kernel_argument("solids", solids, len(solids), _SOLID, lanes, dtype=torch.float64),
-            len(solids),
-            as_kernel_argument("goal", contact.goal, 3, lanes, dtype=torch.float64),
-            *(COLLISION_RADIUS_M, contact.every, steps, PLANT_RATE_HZ),
-            *(
-                as_kernel_argument(n, standing[n], lanes, dtype=dtype)
-                for n, dtype in _STANDING.items()
-            ),
+            lend("solids", contact.solids, len(contact.solids), _SOLID, lanes, dtype=torch.float64),
+            len(contact.solids),
+            lend("goal", contact.goal, 3, lanes, dtype=torch.float64),
+            *(COLLISION_RADIUS_M, CONTACT_EVERY, standing.steps, PLANT_RATE_HZ),
+            *ends.values(),
         )
         flown = self.advance(plant_state, command, winds, trial)
-        return flown, replace(progress, **standing)
+        progress = replace(progress, **{name: lent.tensor for name, lent in ends.items()})
+        return flown, Standing(contact, progress, standing.steps + len(winds))
 
 
 def _ready(name: str, value: Tensor, *shape: int) -> Lent:
-    if value.shape != shape:
-        value = value.expand(shape)
-    return as_kernel_argument(name, value.double().contiguous(), *shape, dtype=torch.float64)
+    return lend(name, value.expand(shape).double(), *shape, dtype=torch.float64)

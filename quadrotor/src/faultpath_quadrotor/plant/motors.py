@@ -51,11 +51,6 @@ def lag_weights(time_constant_s: Tensor, dt_s: float) -> tuple[Tensor, Tensor]:
     return torch.exp(-h), -torch.expm1(-h) / h
 
 
-def respond(thrusts: Tensor, commands: Tensor, left: Tensor) -> Tensor:
-    """Return the thrusts [4, *b] N once only `left` [*b] of their gap to `commands` is left."""
-    return torch.lerp(commands, thrusts, left)
-
-
 def gyroscopic_coupling(vehicle: Vehicle) -> Tensor:
     """Return (Iy - Iz) / Ix and its cyclic companions, [3, *b]."""
     x, y, z = vehicle.inertia_kgm2.unbind(0)

@@ -38,51 +38,59 @@ class Contact:
     geometry: Geometry
     goal: Tensor
     """`[3, L]`, m."""
-    every: int = CONTACT_EVERY
-    """Plant steps between two looks."""
 
     @cached_property
     def solids(self) -> Tensor:
         """The prisms as the compiled check reads them, `[K, 10, L]`: `Solid` names the rows."""
         return self.geometry.numbers().transpose(0, 1).contiguous()
 
-    def begin(self, state: State) -> TrialProgress:
-        """Return the progress of trials that start at `state`."""
+    def clearance(self, state: State) -> Tensor:
+        """Return how far each vehicle is from what it would touch, `[L]`, m."""
+        return self.geometry.distance(state.position) - COLLISION_RADIUS_M
+
+    def remaining(self, state: State) -> Tensor:
+        """Return how far each vehicle is from its goal, `[L]`, m."""
+        return (state.position - self.goal).norm(dim=0)
+
+    def begin(self, state: State) -> Standing:
+        """Return where trials stand that start at `state`."""
         zero = torch.zeros_like(self.goal[0])
         none = torch.zeros_like(zero, dtype=torch.bool)
-        return TrialProgress(
+        progress = TrialProgress(
             running=~none,
             crashed=none,
             succeeded=none,
             time_s=zero,
-            terminal_distance_m=self._remaining(state),
-            min_clearance_m=self._clearance(state),
+            terminal_distance_m=self.remaining(state),
+            min_clearance_m=self.clearance(state),
         )
+        return Standing(self, progress, 0)
 
-    def look(self, progress: TrialProgress, state: State, steps: int) -> TrialProgress:
-        """Return the progress once `steps` plant steps of the trials have led to `state`."""
-        clearance = self._clearance(state)
-        hit = progress.running & (clearance <= 0)
-        return replace(
+
+@dataclass(frozen=True)
+class Standing:
+    """Where trials stand after some plant steps, and what they may touch."""
+
+    contact: Contact
+    progress: TrialProgress
+    steps: int
+
+    def after(self, state: State, steps: int) -> Standing:
+        """Return where they stand once so many more plant steps have led to `state`."""
+        progress, clearance = self.progress, self.contact.clearance(state)
+        running, steps = progress.running, self.steps + steps
+        hit = running & (clearance <= 0)
+        remaining = self.contact.remaining(state)
+        least = torch.minimum(progress.min_clearance_m, clearance)
+        looked = replace(
             progress,
-            running=progress.running & ~hit,
+            running=running & ~hit,
             crashed=progress.crashed | hit,
-            time_s=torch.where(progress.running, steps / PLANT_RATE_HZ, progress.time_s),
-            terminal_distance_m=torch.where(
-                progress.running, self._remaining(state), progress.terminal_distance_m
-            ),
-            min_clearance_m=torch.where(
-                progress.running,
-                torch.minimum(progress.min_clearance_m, clearance),
-                progress.min_clearance_m,
-            ),
+            time_s=torch.where(running, steps / PLANT_RATE_HZ, progress.time_s),
+            terminal_distance_m=torch.where(running, remaining, progress.terminal_distance_m),
+            min_clearance_m=torch.where(running, least, progress.min_clearance_m),
         )
-
-    def _clearance(self, state: State) -> Tensor:
-        return self.geometry.distance(state.position) - COLLISION_RADIUS_M
-
-    def _remaining(self, state: State) -> Tensor:
-        return (state.position - self.goal).norm(dim=0)
+        return Standing(self.contact, looked, steps)
 
 
 @dataclass(frozen=True)
@@ -124,21 +132,13 @@ class Plant(ABC):
         """
 
     def fly(
-        self,
-        plant_state: PlantState,
-        command: Tensor,
-        winds: Tensor,
-        contact: Contact,
-        progress: TrialProgress,
-        steps: int,
-    ) -> tuple[PlantState, TrialProgress]:
+        self, plant_state: PlantState, command: Tensor, winds: Tensor, standing: Standing
+    ) -> tuple[PlantState, Standing]:
         """Advance as `advance` does, and look for contact on the way.
 
-        `steps` plant steps of the trials came before. A plant that has a faster way to the same
-        states and progress overrides this.
+        A plant that has a faster way to the same states and progress overrides this.
         """
-        for block in winds.split(contact.every):
+        for block in winds.split(CONTACT_EVERY):
             plant_state = self.advance(plant_state, command, block)
-            steps += len(block)
-            progress = contact.look(progress, plant_state.state, steps)
-        return plant_state, progress
+            standing = standing.after(plant_state.state, len(block))
+        return plant_state, standing

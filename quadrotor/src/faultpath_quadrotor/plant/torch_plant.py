@@ -10,15 +10,10 @@ from faultpath_quadrotor.native.kernel_args import covered
 from faultpath_quadrotor.plant import motors
 from faultpath_quadrotor.plant.compiled import CompiledPlant
 from faultpath_quadrotor.plant.motors import RateLoop
-from faultpath_quadrotor.plant.protocol import Contact, Plant, PlantState, TrialProgress
+from faultpath_quadrotor.plant.protocol import Plant, PlantState, Standing
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.state import State
-from faultpath_quadrotor.vehicle import (
-    COLLECTIVE_MAX_N,
-    GRAVITY_MPS2,
-    PLANT_DT_S,
-    RATE_LIMIT_RADPS,
-)
+from faultpath_quadrotor.vehicle import COLLECTIVE_MAX_N, GRAVITY_MPS2, PLANT_DT_S, RATE_LIMIT_RADPS
 
 
 class TorchPlant(Plant):
@@ -68,18 +63,12 @@ class TorchPlant(Plant):
         return plant_state
 
     def fly(
-        self,
-        plant_state: PlantState,
-        command: Tensor,
-        winds: Tensor,
-        contact: Contact,
-        progress: TrialProgress,
-        steps: int,
-    ) -> tuple[PlantState, TrialProgress]:
+        self, plant_state: PlantState, command: Tensor, winds: Tensor, standing: Standing
+    ) -> tuple[PlantState, Standing]:
         """Fly as every plant does; with a kernel in one call, contact checks among its steps."""
         if self._compiled is None:
-            return super().fly(plant_state, command, winds, contact, progress, steps)
-        return self._compiled.fly(plant_state, command, winds, contact, progress, steps)
+            return super().fly(plant_state, command, winds, standing)
+        return self._compiled.fly(plant_state, command, winds, standing)
 
     def _step(
         self, plant_state: PlantState, level: Tensor, target: Tensor, wind_mps: Tensor
@@ -87,8 +76,8 @@ class TorchPlant(Plant):
         state, dt_s = plant_state.state, self._dt_s
         free = motors.gyroscopic(self._coupling, state.rate)
         commands = self._loop.motor_commands(level, target, state.rate, free)
-        thrusts = motors.respond(plant_state.thrusts, commands, self._left_end)
-        mean = motors.respond(plant_state.thrusts, commands, self._left_mean)
+        thrusts = torch.lerp(commands, plant_state.thrusts, self._left_end)
+        mean = torch.lerp(commands, plant_state.thrusts, self._left_mean)
         kick_and_torque = (self._acceleration * mean).sum(1)
 
         rotation, rate = motors.turn(

@@ -60,25 +60,17 @@ class Winds(Frozen):
         """The evaluation's levels by name."""
         return {f"L{i}": WindLevel(mean) for i, mean in enumerate(self.means_mps)}
 
-    def series(
-        self, level: str, index: int, duration_s: float, rate_hz: float = PLANT_RATE_HZ
-    ) -> Array:
-        """Return an evaluation scene's wind, world frame, m/s, [T, 3] with T = duration x rate.
+    def series(self, level: str, index: int, duration_s: float) -> Array:
+        """Return an evaluation scene's wind at the plant's steps, world frame, m/s, [T, 3].
 
         Keyed by level and scene index alone, so that a wind recurs in every library at its index
-        (paper, Section IV-B). A longer series at the same rate begins with the shorter one;
-        `KeyError` for an unknown level.
+        (paper, Section IV-B). A longer series begins with the shorter one; `KeyError` for an
+        unknown level.
         """
         stream = generator(f"wind/{level}", str(index), 0)
-        return self.sample(stream, self.levels[level], duration_s, rate_hz)
+        return self.sample(stream, self.levels[level], duration_s)
 
-    def pool_series(
-        self,
-        collection_seed: int,
-        episode: int,
-        duration_s: float,
-        rate_hz: float = PLANT_RATE_HZ,
-    ) -> Array:
+    def pool_series(self, collection_seed: int, episode: int, duration_s: float) -> Array:
         """Return a training episode's wind, [T, 3] m/s, keyed by collection seed and episode.
 
         The sustained speed is uniform in `pool_mean_mps` and its direction uniform over the
@@ -86,22 +78,20 @@ class Winds(Frozen):
         """
         stream = generator("wind/collection", str(episode), collection_seed)
         level = WindLevel(stream.uniform(*self.pool_mean_mps), 90.0)
-        return self.sample(stream, level, duration_s, rate_hz)
+        return self.sample(stream, level, duration_s)
 
-    def sample(
-        self, stream: np.random.Generator, level: WindLevel, duration_s: float, rate_hz: float
-    ) -> Array:
+    def sample(self, stream: np.random.Generator, level: WindLevel, duration_s: float) -> Array:
         """Return one wind of `level` from `stream`, world frame, m/s, [T, 3]."""
-        steps = round(duration_s * rate_hz)
+        steps = round(duration_s * PLANT_RATE_HZ)
         axes = _flow_axes(stream, level.elevation_deg)
         gust = one_minus_cosine(
-            np.arange(steps) / rate_hz,
+            np.arange(steps) / PLANT_RATE_HZ,
             onset_s=stream.uniform(*self.gust_onset_s),
             duration_s=stream.uniform(*GUST_DURATION_S),
             peak=stream.uniform(*self.gust) * level.mean_mps,
         )
         airspeed = level.reference_airspeed_mps
-        turbulence = dryden(stream, steps, rate_hz, airspeed, self.length_m)
+        turbulence = dryden(stream, steps, PLANT_RATE_HZ, airspeed, self.length_m)
         along = self.turbulence * level.mean_mps * turbulence
         along[:, 0] += level.mean_mps + gust
         # Added up here, as a library's product depends on the processor.
@@ -119,11 +109,7 @@ def one_minus_cosine(time_s: Array, onset_s: float, duration_s: float, peak: flo
 
 
 def dryden(
-    stream: np.random.Generator,
-    steps: int,
-    rate_hz: float,
-    airspeed_mps: float,
-    length_m: float,
+    stream: np.random.Generator, steps: int, rate_hz: float, airspeed_mps: float, length_m: float
 ) -> Array:
     """Return turbulence of unit standard deviation along and twice across the flow, [steps, 3].
 

@@ -11,7 +11,7 @@ from torch import Tensor
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.estimators.sensors import SAMPLES
 from faultpath_quadrotor.plant import Plant, TorchPlant
-from faultpath_quadrotor.plant.protocol import Contact
+from faultpath_quadrotor.plant.protocol import Contact, TrialProgress
 from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.plant.wind import Winds
 from faultpath_quadrotor.scenes.geometry import Geometry
@@ -55,11 +55,11 @@ class World:
         self.vehicle = Vehicle.stack([scene.vehicle for scene in lanes]).to(device)
         self.goal = _points([scene.goal_m for scene in lanes]).to(device)
         self._winds = series.to(device)
-        self._contact = Contact(Geometry.stack(lanes, free_space, device=device), self.goal)
+        contact = Contact(Geometry.stack(lanes, free_space, device=device), self.goal)
         self._plant = plant(self.vehicle)
         self.plant_state = self._plant.start(start.to(device))
         self.step = 0
-        self.progress = self._contact.begin(self.state)
+        self._standing = contact.begin(self.state)
         self._part = STEPS_PER_CONTROL // SAMPLES if sampled else STEPS_PER_CONTROL
         self.passed: tuple[State, ...] = (self.state,) * (SAMPLES + 1)
         """Where `sampled`: the states of the last interval at the ends of its parts."""
@@ -78,6 +78,11 @@ class World:
         return self.plant_state.state
 
     @property
+    def progress(self) -> TrialProgress:
+        """Where each lane's trial stands."""
+        return self._standing.progress
+
+    @property
     def wind_mps(self) -> Tensor:
         """Wind at this moment, `[3, L]`, m/s, world frame."""
         return self._winds[self.step * STEPS_PER_CONTROL]
@@ -86,20 +91,19 @@ class World:
         """Fly one control interval under `command` `[4, L]` and see whose trial ended."""
         steps = self.step * STEPS_PER_CONTROL
         winds = self._winds[steps : steps + STEPS_PER_CONTROL]
-        passed, progress = [self.state], self.progress
+        passed, standing = [self.state], self._standing
         for part in winds.split(self._part):
-            self.plant_state, progress = self._plant.fly(
-                self.plant_state, command, part, self._contact, progress, steps
-            )
-            steps += len(part)
+            self.plant_state, standing = self._plant.fly(self.plant_state, command, part, standing)
             passed.append(self.state)
         self.passed = tuple(passed)
         self.step += 1
         # Arrivals are checked once a control step, as the planner acts.
+        progress = standing.progress
         arrived = progress.running & (progress.terminal_distance_m <= GOAL_RADIUS_M)
-        self.progress = replace(
+        progress = replace(
             progress, running=progress.running & ~arrived, succeeded=progress.succeeded | arrived
         )
+        self._standing = replace(standing, progress=progress)
 
 
 def _points(points: Sequence[Sequence[float]]) -> Tensor:

@@ -38,10 +38,7 @@ class AnchoredPredictor(Predictor):
     """
 
     def __init__(
-        self,
-        network: LatentNetwork,
-        wind: bool,
-        drag_kgps: Sequence[float] | None = None,
+        self, network: LatentNetwork, wind: bool, drag_kgps: Sequence[float] | None = None
     ) -> None:
         self.network = network
         self.kinematics = KinematicIntegrator(wind=wind, drag_kgps=drag_kgps)

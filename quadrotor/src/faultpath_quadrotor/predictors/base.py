@@ -100,10 +100,6 @@ class Predictor(ABC):
     data_files: Sequence[str | PathLike[str]] | None = None
     """Files that a user's own predictor reads, of every seed, such as weights."""
 
-    def readers(self, module: str = "predictor") -> frozenset[str]:
-        """Return the names `module.place` under which the interface lists its places."""
-        return frozenset(f"{module}.{place}" for place in self.reads)
-
     def encode(self, history: Delivered) -> Tensor | None:
         """Return the history code `[32, *batch]`, once a replan; `None` without a memory.
 

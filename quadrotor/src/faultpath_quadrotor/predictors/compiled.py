@@ -20,9 +20,10 @@ from faultpath_quadrotor.native.kernel_args import (
     BLOCK,
     Block,
     Lent,
-    as_kernel_argument,
     fields,
     is_exactly,
+    lend,
+    output,
     pack,
     unlike,
 )
@@ -33,7 +34,7 @@ from faultpath_quadrotor.predictors.anchored import (
     AnchoredPredictor,
 )
 from faultpath_quadrotor.predictors.base import Predictor, PredictorInputs, Rollout
-from faultpath_quadrotor.predictors.kinematic import KinematicIntegrator, LinearDrag
+from faultpath_quadrotor.predictors.kinematic import KEEP, MEAN, KinematicIntegrator, LinearDrag
 from faultpath_quadrotor.predictors.network import (
     ACTION_EMBEDDING,
     ACTION_FEATURES,
@@ -46,7 +47,7 @@ from faultpath_quadrotor.predictors.unanchored import (
     UnanchoredPredictor,
 )
 from faultpath_quadrotor.state import State
-from faultpath_quadrotor.vehicle import GRAVITY_MPS2
+from faultpath_quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2
 
 MOST_HIDDEN = 128
 """Fixed in `rollout.cpp`, as are the other sizes."""
@@ -147,8 +148,7 @@ class HorizonLoop:
                 **_packed(predictor.network),
             }
         if integrator is not None:
-            dt, keep, mean = integrator.step_constants
-            step |= {"dt": dt, "keep": keep, "mean": mean, "dragging": integrator.drag}
+            step |= {"dt": CONTROL_DT_S, "keep": KEEP, "mean": MEAN, "dragging": integrator.drag}
             step |= {"windy": "wind_map" in integrator.reads}
             step |= {"drag": integrator.air.coefficients_kgps}
         self._model = _Model(**step)
@@ -162,24 +162,18 @@ class HorizonLoop:
         horizon, _, scenes, candidates = commands.shape
         if not horizon:
             raise ValueError("there is no step to roll out: the commands have a horizon of 0")
-        positions = commands.new_empty(3, scenes, horizon, candidates)
-        velocities = torch.empty_like(positions)
-        ends = commands.new_empty(12, scenes, candidates)
+        positions, velocities = (output(3, scenes, horizon, candidates) for _ in range(2))
+        ends = output(12, scenes, candidates)
         readings = {**dict(zip(_ROWS, inputs.state.parts, strict=False)), **inputs.delivered}
         self._kernels.call(
             "faultpath_roll",
             *(self._model, _Inputs(*self._lent(readings, scenes))),
-            as_kernel_argument(
-                "commands", commands.contiguous(), horizon, ACTION_FEATURES, scenes, candidates
-            ),
-            *(horizon, scenes, candidates),
-            as_kernel_argument("positions", positions, 3, scenes, horizon, candidates),
-            as_kernel_argument("velocities", velocities, 3, scenes, horizon, candidates),
-            as_kernel_argument("ends", ends, 12, scenes, candidates),
+            lend("commands", commands, horizon, ACTION_FEATURES, scenes, candidates),
+            *(horizon, scenes, candidates, positions, velocities, ends),
         )
-        rotation, rate = ends[:9].unflatten(0, (3, 3)), ends[9:]
-        final = State(positions[:, :, -1], velocities[:, :, -1], rotation, rate)
-        return Rollout(positions, velocities, final)
+        moved, pushed, (turned, rate) = positions.tensor, velocities.tensor, ends.tensor.split(9)
+        final = State(moved[:, :, -1], pushed[:, :, -1], turned.unflatten(0, (3, 3)), rate)
+        return Rollout(moved, pushed, final)
 
     def _lent(self, readings: Delivered, scenes: int) -> Iterable[Lent | None]:
         for read, rows in _ROWS.items():
@@ -192,7 +186,7 @@ class HorizonLoop:
                     "none"
                 )
             else:
-                yield as_kernel_argument(channel, readings[read].contiguous(), *rows, scenes, 1)
+                yield lend(channel, readings[read], *rows, scenes, 1)
 
 
 def _integrator(integrator: KinematicIntegrator) -> str:
@@ -235,9 +229,7 @@ def _packed(network: LatentNetwork) -> dict[str, _Layer]:
     for name, weights in _layers(network).items():
         packed = pack(weights.detach() * _SCALES.get(name, 1.0), BLOCK)
         blocks, inputs, _ = packed.shape
-        laid[name] = _Layer(
-            as_kernel_argument(name, packed, *packed.shape), inputs - 1, blocks * BLOCK
-        )
+        laid[name] = _Layer(lend(name, packed, *packed.shape), inputs - 1, blocks * BLOCK)
     return laid
 
 

@@ -43,6 +43,9 @@ class LinearDrag:
 
 RATE_LAG_S = 0.05
 """Time constant of the closed rate loop: the inverse of its gain of 20 1/s."""
+KEEP = math.exp(-CONTROL_DT_S / RATE_LAG_S)
+MEAN = RATE_LAG_S / CONTROL_DT_S * (1 - KEEP)
+"""What is left of a rate error at the end of a step, and on average over it."""
 
 
 @dataclass(frozen=True)
@@ -82,7 +85,6 @@ class KinematicIntegrator(Predictor):
         self,
         drag: bool = False,
         wind: bool = True,
-        dt_s: float = CONTROL_DT_S,
         drag_kgps: Sequence[float] | None = None,
     ) -> None:
         if drag and not wind:
@@ -96,14 +98,6 @@ class KinematicIntegrator(Predictor):
         if wind:
             self.reads |= {"wind_map"}
         self.air = LinearDrag(drag_kgps or (0.0, 0.0, 0.0))
-        self._dt = dt_s
-        self._keep = math.exp(-dt_s / RATE_LAG_S)
-        self._mean = RATE_LAG_S / dt_s * (1 - self._keep)
-
-    @property
-    def step_constants(self) -> tuple[float, float, float]:
-        """Step in s, and what is left of a rate error at its end and on average."""
-        return self._dt, self._keep, self._mean
 
     def begin(self, inputs: PredictorInputs) -> Constants:
         """Return the constants of the horizon; the memory does not change after."""
@@ -122,18 +116,14 @@ class KinematicIntegrator(Predictor):
         return self.advance(state, command, memory), memory
 
     def advance(
-        self,
-        state: State,
-        command: Tensor,
-        constants: Constants,
-        residual: Residual | None = None,
+        self, state: State, command: Tensor, constants: Constants, residual: Residual | None = None
     ) -> State:
         """Advance one interval; a residual of zero changes no bit of the result."""
-        dt = self._dt
+        dt = CONTROL_DT_S
         target = command[1:]
         lag = state.rate - target
-        turn = torch.add(target, lag, alpha=self._mean).mul_(dt)
-        rate = torch.add(target, lag, alpha=self._keep)
+        turn = torch.add(target, lag, alpha=MEAN).mul_(dt)
+        rate = torch.add(target, lag, alpha=KEEP)
         if residual is not None:
             turn = torch.add(turn, residual.angular_radps2, alpha=0.5 * dt * dt)
             rate = torch.add(rate, residual.angular_radps2, alpha=dt)

@@ -3,7 +3,7 @@
 import torch
 from typing_extensions import override
 
-from faultpath.loop import Outputs, Query
+from faultpath.loop import Batch, Memory, Outputs, Query
 from faultpath_quadrotor.batching import Delivered, LaneModule
 from faultpath_quadrotor.predictors import Predictor
 from faultpath_quadrotor.predictors.base import hover_thrust
@@ -11,7 +11,7 @@ from faultpath_quadrotor.predictors.predictor_inputs import ports, predictor_inp
 from faultpath_quadrotor.predictors.rollout import Candidates, Predicted, Roll, rolling
 
 
-class Prediction(LaneModule):
+class PredictorModule(LaneModule):
     """Answers where commands lead, and gives the thrust that it believes holds the vehicle."""
 
     name, writes = "predictor", ("predicted_motion", "hover_thrust")
@@ -22,17 +22,22 @@ class Prediction(LaneModule):
         self.reads = ports(predictor.reads - {"history"})
 
     @override
-    def compute(self, readings: Delivered, step: int, memory: Roll | None) -> tuple[Outputs, Roll]:
-        roll = memory or rolling(self._predictor, self._device)
+    def begin(self, batch: Batch) -> Memory:
+        # Built once a batch: a compiled rollout holds a copy of the weights that there are now.
+        lanes, count, _ = super().begin(batch)
+        return lanes, count, rolling(self._predictor, self._device)
+
+    @override
+    def compute(self, readings: Delivered, step: int, memory: Roll) -> tuple[Outputs, Roll]:
         known = predictor_inputs(self._predictor.reads, single(readings))
         hover = hover_thrust(known.delivered, "trim")[:, 0]
 
         def predict(candidates: Candidates) -> Predicted:
             rollouts = (
-                roll(known.take(part.index), commands)
-                for part, commands in zip(candidates.parts, candidates.commands, strict=True)
+                memory(known.take(chunk.index), commands)
+                for chunk, commands in zip(candidates.chunks, candidates.commands, strict=True)
             )
-            return Predicted(candidates.count, candidates.parts, tuple(rollouts))
+            return Predicted(candidates.count, candidates.chunks, tuple(rollouts))
 
         motion = Query(predict, Predicted.motion, Predicted.moved)
-        return {"predicted_motion": motion, "hover_thrust": hover}, roll
+        return {"predicted_motion": motion, "hover_thrust": hover}, memory

@@ -10,11 +10,11 @@ from dataclasses import dataclass
 
 import torch
 from torch import Tensor, nn
+from torch.nn import functional
 
 from faultpath_quadrotor.batching import Delivered
-from faultpath_quadrotor.native.kernel_args import as_kernel_argument, covered, tell_portable
-from faultpath_quadrotor.native.library import kernels_on
-from faultpath_quadrotor.predictors.affine import affine
+from faultpath_quadrotor.native.kernel_args import covered, lend, output, tell_portable
+from faultpath_quadrotor.native.library import kernels_for, kernels_on
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import GRAVITY_MPS2
 
@@ -25,6 +25,31 @@ ACTION_EMBEDDING = 16  # derived: with it the parameter counts are the paper's
 STATE_FEATURES = 15
 ACTION_FEATURES = 4
 BASE_FEATURES = STATE_FEATURES + ACTION_FEATURES  # 19 (paper, Section IV-A)
+
+
+def affine(weight: Tensor, bias: Tensor, x: Tensor, gelu: bool = False) -> Tensor:
+    """Return `weight @ x + bias` `[outputs, N]`, through a Gaussian error linear unit if asked.
+
+    Args:
+        weight: `[outputs, inputs]`.
+        bias: `[outputs, 1]`.
+        x: `[inputs, N]`.
+        gelu: Whether the unit follows.
+    """
+    built = kernels_for(weight, bias, x)
+    if built is None:
+        y = torch.addmm(bias, weight, x)
+        return functional.gelu(y) if gelu else y
+    (outputs, inputs), columns = weight.shape, x.shape[1]
+    filled = output(outputs, columns)
+    built.call(
+        "faultpath_affine",
+        lend("weight", weight, outputs, inputs),
+        lend("bias", bias, outputs, 1),
+        lend("x", x, inputs, columns),
+        *(outputs, inputs, columns, int(gelu), filled),
+    )
+    return filled.tensor
 
 
 class Affine(nn.Module):
@@ -73,23 +98,23 @@ class GatedCell(nn.Module):
         """Return the latent `[latent, N]` after a sequence `[T, inputs, N]`, from zero."""
         built = None if torch.is_grad_enabled() else kernels_on(sequence.device)
         steps, inputs, columns = sequence.shape
-        latent = sequence.new_zeros(self.latent, columns)
         if built is None or not self._has_kernel(sequence):
+            latent = sequence.new_zeros(self.latent, columns)
             for step in sequence:
                 latent = self(step, latent)
             return latent
         gates, entering, kept = 3 * self.latent, self.from_input, self.from_latent
+        last = output(self.latent, columns)
         built.call(
             "faultpath_recur",
-            as_kernel_argument("weights of the inputs", entering.weight.detach(), gates, inputs),
-            as_kernel_argument("biases of the inputs", entering.bias.detach(), gates, 1),
-            as_kernel_argument("weights of the latent", kept.weight.detach(), gates, self.latent),
-            as_kernel_argument("biases of the latent", kept.bias.detach(), gates, 1),
-            as_kernel_argument("sequence", sequence.contiguous(), steps, inputs, columns),
-            *(steps, inputs, columns),
-            as_kernel_argument("latent", latent, self.latent, columns),
+            lend("weights of the inputs", entering.weight, gates, inputs),
+            lend("biases of the inputs", entering.bias, gates, 1),
+            lend("weights of the latent", kept.weight, gates, self.latent),
+            lend("biases of the latent", kept.bias, gates, 1),
+            lend("sequence", sequence, steps, inputs, columns),
+            *(steps, inputs, columns, last),
         )
-        return latent
+        return last.tensor
 
     def _has_kernel(self, sequence: Tensor) -> bool:
         layers = (self.from_input, self.from_latent)

@@ -74,10 +74,10 @@ class Candidates:
 
     count: int
     """Scenes of the batch, B."""
-    parts: tuple[Chunk, ...]
+    chunks: tuple[Chunk, ...]
     """The scenes that are planned for."""
     commands: tuple[Tensor, ...]
-    """`[H, 4, S, K]` for each part, N and rad/s."""
+    """`[H, 4, S, K]` for each chunk, N and rad/s."""
 
 
 @dataclass(frozen=True)
@@ -85,9 +85,9 @@ class Predicted:
     """The predictor's answer, and as such the request to the clearance."""
 
     count: int
-    parts: tuple[Chunk, ...]
+    chunks: tuple[Chunk, ...]
     rollouts: tuple[Rollout, ...]
-    """One for each part."""
+    """One for each chunk."""
 
     def motion(self) -> Tensor:
         """Return positions and velocities of the whole batch, `[B, 6, H, K]`, m and m/s.
@@ -96,17 +96,17 @@ class Predicted:
         """
         first = self.rollouts[0].positions
         whole = first.new_zeros(6, self.count, *first.shape[2:])
-        for part, rollout in zip(self.parts, self.rollouts, strict=True):
-            whole[:3, part.rows] = rollout.positions
-            whole[3:, part.rows] = rollout.velocities
+        for chunk, rollout in zip(self.chunks, self.rollouts, strict=True):
+            whole[:3, chunk.rows] = rollout.positions
+            whole[3:, chunk.rows] = rollout.velocities
         return whole.movedim(1, 0)
 
     def moved(self, motion: Tensor) -> "Predicted":
         """Return it with other positions and velocities `[B, 6, H, K]`; attitudes stay."""
         lanes = motion.movedim(0, 1)
         rollouts: list[Rollout] = []
-        for part, rollout in zip(self.parts, self.rollouts, strict=True):
-            positions, velocities = (x.contiguous() for x in lanes[:, part.rows].split(3))
+        for chunk, rollout in zip(self.chunks, self.rollouts, strict=True):
+            positions, velocities = (x.contiguous() for x in lanes[:, chunk.rows].split(3))
             end = positions[:, :, -1], velocities[:, :, -1]
             final = replace(rollout.final, position=end[0], velocity=end[1])
             rollouts.append(Rollout(positions, velocities, final))

@@ -15,6 +15,7 @@ from faultpath_quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2, RATE_GAIN_PE
 CODE = 32
 """Numbers of a history code, as the interface declares it."""
 SUBSTEPS = 4
+SUBSTEP_S = CONTROL_DT_S / SUBSTEPS
 FOLLOWED = 4
 """Intervals of the history that are replayed: after four of 50 ms even the slowest motors of the
 ranges, 0.08 s, have forgotten where they began but for a twelfth."""
@@ -48,9 +49,6 @@ class TrueParameter(Predictor):
         {"initial_state", "trim", "dynamics", "wind_map", "physics", "history", "latent"}
     )
 
-    def __init__(self, dt_s: float = CONTROL_DT_S) -> None:
-        self._h = dt_s / SUBSTEPS
-
     @override
     def encode(self, history: Delivered) -> Tensor:
         """Return the last body rates and commands, `[32, *batch]`: what the replay starts from.
@@ -65,7 +63,7 @@ class TrueParameter(Predictor):
     def begin(self, inputs: PredictorInputs) -> Memory:
         """Return constants, and motors as they are now."""
         physics = Physics.of(inputs["physics", "physics"])
-        lag = physics.motor_time_constant_s / self._h
+        lag = physics.motor_time_constant_s / SUBSTEP_S
         keep = torch.exp(-1 / lag)
         start = _Memory(
             physics=physics,
@@ -109,7 +107,7 @@ class TrueParameter(Predictor):
     def _substep(
         self, state: State, target: Tensor, thrust: Tensor, torque: Tensor, memory: _Memory
     ) -> tuple[State, Tensor]:
-        h = self._h
+        h = SUBSTEP_S
         physics = memory.physics
         rate, torque = self._turn(state.rate, target, torque, memory)
         rotation = so3.compose(state.rotation, so3.exp(0.5 * h * (state.rate + rate)))
@@ -131,4 +129,4 @@ class TrueParameter(Predictor):
         demand = memory.stiffness * (target - rate) + gyroscopic
         torque = torch.lerp(demand, torque, memory.keep)
         turned = memory.physics.torque_scale * torque - gyroscopic
-        return rate + self._h * turned / inertia, torque
+        return rate + SUBSTEP_S * turned / inertia, torque

@@ -14,7 +14,9 @@ Memory: TypeAlias = Any
 
 
 class Reconstruction(ABC):
-    """Estimates the current wind from completed intervals; it never sees a candidate action.
+    """A wind estimator: estimates the current wind from completed intervals.
+
+    It never sees a candidate action. The vehicle's own state comes from an `Estimator`.
 
     `reads` is all that it may know. The caller takes exactly these from the taps, so a variant's
     readers follow from it, and an undeclared read has no entry. The same channel at two places is
@@ -27,10 +29,6 @@ class Reconstruction(ABC):
     reads: frozenset[Read]
     data_files: Sequence[str | PathLike[str]] | None = None
     """Files that a user's own reconstruction reads, of every seed, such as weights."""
-
-    def readers(self, module: str = "reconstruction") -> frozenset[str]:
-        """Return the names `module.place` under which the interface lists the reads."""
-        return frozenset(f"{module}.{place}" for _, place in self.reads)
 
     @abstractmethod
     def begin(self, delivered: Delivered) -> Memory:

@@ -10,7 +10,7 @@ from faultpath_quadrotor.batching import Delivered, LaneModule
 from faultpath_quadrotor.reconstruction import Reconstruction
 
 
-class WindReconstruction(LaneModule):
+class WindModule(LaneModule):
     """Turns completed intervals into the wind that the predictor assumes."""
 
     name, writes = "reconstruction", ("reconstructed_wind",)

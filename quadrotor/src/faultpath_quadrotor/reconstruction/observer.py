@@ -43,14 +43,8 @@ class DisturbanceObserver(Reconstruction):
         }
     )
 
-    def __init__(
-        self,
-        drag_kgps: Sequence[float],
-        low_pass: float = LOW_PASS,
-        dt_s: float = CONTROL_DT_S,
-    ) -> None:
+    def __init__(self, drag_kgps: Sequence[float], low_pass: float = LOW_PASS) -> None:
         self._alpha = low_pass
-        self._dt = dt_s
         self._air = LinearDrag(drag_kgps)
 
     def begin(self, delivered: Delivered) -> Memory:
@@ -70,7 +64,7 @@ class DisturbanceObserver(Reconstruction):
     def observed(self, memory: ObserverMemory, delivered: Delivered) -> Tensor:
         """Return the acceleration of the last interval, `[3, *batch]`, m/s^2."""
         velocity = delivered["velocity", "velocity_difference"]
-        return (velocity - memory.velocity_mps) / self._dt
+        return (velocity - memory.velocity_mps) / CONTROL_DT_S
 
     @override
     def wind(self, memory: Memory) -> Tensor:

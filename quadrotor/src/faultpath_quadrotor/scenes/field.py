@@ -21,7 +21,7 @@ import torch
 from torch import Tensor
 
 from faultpath_quadrotor import native
-from faultpath_quadrotor.native.kernel_args import Block, as_kernel_argument, covered, fields
+from faultpath_quadrotor.native.kernel_args import Block, covered, fields, lend, output
 from faultpath_quadrotor.scenes.geometry import rectangle_distance
 from faultpath_quadrotor.scenes.prisms import RoundedPrism, arena, solids
 from faultpath_quadrotor.scenes.scene import Scene
@@ -45,17 +45,17 @@ class Lattice:
     """
 
     axes: tuple[Tensor, Tensor, Tensor]
-    spacing_m: float
+    spacing_m: float = CELL_M
 
     @classmethod
-    def over(cls, scene: Scene, spacing_m: float = CELL_M) -> "Lattice":
+    def over(cls, scene: Scene) -> "Lattice":
         """Return the lattice that covers a scene; its third point is the arena's low corner."""
         axes: list[Tensor] = []
         for low, high in zip(scene.bounds.low_m, scene.bounds.high_m, strict=True):
-            cells = ceil((high - low) / spacing_m - _ROUNDING)
+            cells = ceil((high - low) / CELL_M - _ROUNDING)
             steps = torch.arange(-_MARGIN, cells + 1 + _MARGIN, dtype=torch.float64)
-            axes.append(low + steps * spacing_m)
-        return cls((axes[0], axes[1], axes[2]), spacing_m)
+            axes.append(low + steps * CELL_M)
+        return cls((axes[0], axes[1], axes[2]))
 
     @property
     def shape(self) -> tuple[int, int, int]:
@@ -146,13 +146,11 @@ class DistanceField:
         cls,
         scenes: Scene | Sequence[Scene],
         free_space: bool = False,
-        *,
-        spacing_m: float = CELL_M,
         device: torch.device | str | None = None,
     ) -> "DistanceField":
         """Bake scenes, or their boundaries alone, into one table: about 0.8 MB each."""
         scenes = [scenes] if isinstance(scenes, Scene) else list(scenes)
-        lattices = [Lattice.over(scene, spacing_m) for scene in scenes]
+        lattices = list(map(Lattice.over, scenes))
         shapes = torch.tensor([lattice.shape for lattice in lattices])  # [B, 3]
         nx, ny, nz = (int(n) for n in shapes.amax(0))
         table = torch.zeros(len(scenes), nx, ny, nz)
@@ -166,7 +164,7 @@ class DistanceField:
             origin=origin.float().T[:, :, None].contiguous().to(device),
             last=(shapes - 2).float().T[:, :, None].contiguous().to(device),
             first=(torch.arange(len(scenes)) * nx * ny * nz).int()[:, None].to(device),
-            per_metre=1.0 / spacing_m,
+            per_metre=1.0 / CELL_M,
         )
 
     def select(self, rows: Tensor | Iterable[int]) -> "DistanceField":
@@ -187,16 +185,10 @@ class DistanceField:
         if kernels is None or field is None:
             return self._interpolate(points)
         scenes, count = len(self.first), points.shape[2]
-        distances = torch.empty(scenes, count)
-        points = points.expand(3, scenes, count).float().contiguous()
-        kernels.call(
-            "faultpath_field",
-            field,
-            as_kernel_argument("points", points, 3, scenes, count),
-            *(scenes, count),
-            as_kernel_argument("distances", distances, scenes, count),
-        )
-        return distances
+        distances, points = output(scenes, count), points.expand(3, scenes, count).float()
+        queried = lend("points", points, 3, scenes, count)
+        kernels.call("faultpath_field", field, queried, scenes, count, distances)
+        return distances.tensor
 
     @cached_property
     def _field(self) -> _Field | None:
@@ -210,11 +202,11 @@ class DistanceField:
         if self.pitch[2] != 1 or min(self.pitch) < 1 or not bool(inside.all()):
             raise ValueError(f"distance field: cells of pitch {self.pitch} lie outside its table")
         return _Field(
-            as_kernel_argument("table", self.table, self.table.numel()),
+            lend("table", self.table, self.table.numel()),
             *self.pitch[:2],
-            as_kernel_argument("origin", self.origin.contiguous(), 3, scenes, 1),
-            as_kernel_argument("last", self.last.contiguous(), 3, scenes, 1),
-            as_kernel_argument("first", self.first.contiguous(), scenes, 1, dtype=torch.int32),
+            lend("origin", self.origin, 3, scenes, 1),
+            lend("last", self.last, 3, scenes, 1),
+            lend("first", self.first, scenes, 1, dtype=torch.int32),
             self.per_metre,
         )
 

@@ -54,8 +54,6 @@ class Geometry:
         cls,
         scenes: Sequence[Scene],
         free_space: bool = False,
-        *,
-        dtype: torch.dtype = torch.float64,
         device: torch.device | str | None = None,
     ) -> "Geometry":
         """Gather the geometry of scenes, or of their boundaries alone."""
@@ -64,13 +62,14 @@ class Geometry:
         padded = [prisms + prisms[:1] * (count - len(prisms)) for prisms in lists]
 
         def table(rows: list[list[list[float]]]) -> Tensor:  # [B, K, F] -> [F, K, B]
-            return torch.tensor(rows, dtype=dtype, device=device).permute(2, 1, 0).contiguous()
+            whole = torch.tensor(rows, dtype=torch.float64, device=device)
+            return whole.permute(2, 1, 0).contiguous()
 
         turn = table([[[cos(p.yaw_rad), sin(p.yaw_rad)] for p in row] for row in padded])
         zero = torch.zeros_like(turn[0])
         along_x = torch.stack([turn[0], -turn[1], zero])
         along_y = torch.stack([turn[1], turn[0], zero])
-        along_z = torch.tensor([0.0, 0.0, 1.0], dtype=dtype, device=device).view(3, 1, 1)
+        along_z = torch.tensor([0.0, 0.0, 1.0]).to(turn).view(3, 1, 1)
         centre = table([[list(p.centre_m) for p in row] for row in padded])
         edge = table([[[p.rounding_m, p.sign] for p in row] for row in padded])
         return cls(

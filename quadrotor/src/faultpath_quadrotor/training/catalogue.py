@@ -60,69 +60,38 @@ class FitJob:
         return self.entry.factory(self.entry.name, self.seed, data)
 
 
-def _predictor(name: str, seed: int, data: Path) -> ModelTask:
+def _task(name: str, seed: int, data: Path) -> ModelTask:
+    """Return the task of a model below."""
+    from faultpath_quadrotor.training.clearance_task import ClearanceTask
     from faultpath_quadrotor.training.predictor_task import PredictorTask
-
-    return PredictorTask(name, seed, data)
-
-
-def _reconstruction(name: str, seed: int, data: Path) -> ModelTask:
     from faultpath_quadrotor.training.reconstruction_task import ReconstructionTask
 
-    return ReconstructionTask(name, seed, data)
+    if name == CLEARANCE.name:
+        return ClearanceTask(seed, data)
+    predicts = any(entry.name == name for entry in PREDICTORS)
+    return (PredictorTask if predicts else ReconstructionTask)(name, seed, data)
 
 
-def _clearance(name: str, seed: int, data: Path) -> ModelTask:
-    from faultpath_quadrotor.training.clearance_task import ClearanceTask
-
-    del name
-    return ClearanceTask(seed, data)
-
-
-_NOMINAL, _WIND, _BOTH = ("nominal",), ("wind",), ("nominal", "wind")
+_NOMINAL, _WIND, _BOTH, _FLOWN = ("nominal",), ("wind",), ("nominal", "wind"), (TRAJECTORY_POOL,)
+_SIX = SHARED_LOSS_SEEDS
 PREDICTORS = (
-    ModelEntry("wm-a", _predictor, _NOMINAL, "physics-anchored predictor", 4),
-    ModelEntry("wm-a+dcc", _predictor, _NOMINAL, "wm-a fitted with perturbed calibration", 4),
-    ModelEntry("wm-u", _predictor, _NOMINAL, "unanchored predictor", 12),
-    ModelEntry("wm-u+dcc", _predictor, _NOMINAL, "wm-u fitted with perturbed calibration", 12),
-    ModelEntry(
-        "wm-a-wind", _predictor, _BOTH, "wm-a with the wind as an input", 8, SHARED_LOSS_SEEDS
-    ),
-    ModelEntry(
-        "wm-a-nowind", _predictor, _BOTH, "wm-a on the same windy data without that input", 8
-    ),
+    ModelEntry("wm-a", _task, _NOMINAL, "physics-anchored predictor", 4),
+    ModelEntry("wm-a+dcc", _task, _NOMINAL, "wm-a fitted with perturbed calibration", 4),
+    ModelEntry("wm-u", _task, _NOMINAL, "unanchored predictor", 12),
+    ModelEntry("wm-u+dcc", _task, _NOMINAL, "wm-u fitted with perturbed calibration", 12),
+    ModelEntry("wm-a-wind", _task, _BOTH, "wm-a with the wind as an input", 8, _SIX),
+    ModelEntry("wm-a-nowind", _task, _BOTH, "wm-a on the same windy data without that input", 8),
 )
+_TRAJECTORY = "gru on closed-loop flights of selection scenes"
 RECONSTRUCTIONS = (
-    ModelEntry(
-        "gru",
-        _reconstruction,
-        _WIND,
-        "wind from the history, given calibration",
-        5,
-        SHARED_LOSS_SEEDS,
-    ),
-    ModelEntry(
-        "gru+dcc",
-        _reconstruction,
-        _WIND,
-        "gru fitted with perturbed calibration",
-        5,
-        SHARED_LOSS_SEEDS,
-    ),
-    ModelEntry("gru+state", _reconstruction, _WIND, "gru fitted with perturbed motion", 5, (0,)),
-    ModelEntry("gru-withheld", _reconstruction, _WIND, "gru without calibration", 5),
-    ModelEntry(
-        "gru-trajectory",
-        _reconstruction,
-        (TRAJECTORY_POOL,),
-        "gru on closed-loop flights of selection scenes",
-        2,
-        after=("wm-a-wind",),
-    ),
+    ModelEntry("gru", _task, _WIND, "wind from the history, given calibration", 5, _SIX),
+    ModelEntry("gru+dcc", _task, _WIND, "gru fitted with perturbed calibration", 5, _SIX),
+    ModelEntry("gru+state", _task, _WIND, "gru fitted with perturbed motion", 5, (0,)),
+    ModelEntry("gru-withheld", _task, _WIND, "gru without calibration", 5),
+    ModelEntry("gru-trajectory", _task, _FLOWN, _TRAJECTORY, 2, after=("wm-a-wind",)),
 )
-CLEARANCE = ModelEntry(
-    "clearance", _clearance, (CLEARANCE_POOL,), "obstacle clearance from depth", 6, (0,)
-)
+_DEPTH = (CLEARANCE_POOL,)
+CLEARANCE = ModelEntry("clearance", _task, _DEPTH, "obstacle clearance from depth", 6, (0,))
 
 ALL = (*PREDICTORS, *RECONSTRUCTIONS, CLEARANCE)
 GROUPS: dict[str, tuple[ModelEntry, ...]] = {
@@ -154,6 +123,5 @@ def choose(names: Sequence[str], seeds: Sequence[int] = ()) -> tuple[FitJob, ...
 
 def stages(jobs: Sequence[FitJob]) -> tuple[tuple[FitJob, ...], ...]:
     """Part the jobs into those that come first and those whose data are flown with them."""
-    first = tuple(job for job in jobs if not job.entry.after)
-    rest = tuple(job for job in jobs if job.entry.after)
-    return tuple(stage for stage in (first, rest) if stage)
+    parted = (tuple(j for j in jobs if bool(j.entry.after) == late) for late in (False, True))
+    return tuple(filter(None, parted))

@@ -32,10 +32,16 @@ def collect(
     be written.
     """
     recipes = {pool: recipe(pool, (episodes or {}).get(pool), seed) for pool in pools}
-    return {
-        pool: make_pool(folder, pool_recipe, _batches(pool_recipe), workers, progress)
-        for pool, pool_recipe in recipes.items()
-    }
+    paths: dict[str, Path] = {}
+    for pool, pool_recipe in recipes.items():
+        every = range(pool_recipe.episodes)
+        batches = [every[first : first + BATCH] for first in every[::BATCH]]
+        parts = [
+            PoolPart(f"{batch.start:06d}+{len(batch)}", len(batch), partial(fly, pool, batch, seed))
+            for batch in batches
+        ]
+        paths[pool] = make_pool(folder, pool_recipe, parts, workers, progress)
+    return paths
 
 
 def recipe(pool: str, episodes: int | None = None, seed: int = 0) -> PoolRecipe:
@@ -46,16 +52,3 @@ def recipe(pool: str, episodes: int | None = None, seed: int = 0) -> PoolRecipe:
     if count < 1:
         raise UserError(f"pool '{pool}' cannot have {count} episodes: ask for at least one.")
     return PoolRecipe(pool=pool, episodes=count, seed=seed, code_sha256=code_of())
-
-
-def _batches(recipe: PoolRecipe) -> list[PoolPart]:
-    every = range(recipe.episodes)
-    batches = (every[first : first + BATCH] for first in every[::BATCH])
-    return [
-        PoolPart(
-            f"{batch.start:06d}+{len(batch)}",
-            len(batch),
-            partial(fly, recipe.pool, batch, recipe.seed),
-        )
-        for batch in batches
-    ]

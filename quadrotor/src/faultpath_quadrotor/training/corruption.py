@@ -44,10 +44,7 @@ def state_noise(reader: str) -> tuple[Fault, ...]:
     """
     return tuple(
         Fault(
-            channel=channel,
-            intervention=Bias(std=std),
-            cause=f"state/{channel}",
-            readers=(reader,),
+            channel=channel, intervention=Bias(std=std), cause=f"state/{channel}", readers=(reader,)
         )
         for channel, std in STATE_STD.items()
     )

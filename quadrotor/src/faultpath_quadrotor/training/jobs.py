@@ -6,10 +6,11 @@ the finished epochs of each.
 
 import time
 import traceback
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from faultpath.plugin.data import locked, make_folder, sweep, write_file
 from faultpath.plugin.system import Stopped, UserError
@@ -79,32 +80,21 @@ class FitFailure:
     details: Path | None = None
 
 
-@dataclass(frozen=True)
-class Overview:
-    """Progress of all models together."""
-
-    done: int
-    total: int
-    fraction: float
-    """Fraction of the work done, by the costs in the catalogue."""
-    running: Mapping[str, FitProgress | None]
-    """Models at work, as `<name>-<seed>`; `None` until the first minibatch."""
-
-
 def run_jobs(
     jobs: Sequence[FitJob],
     data: Path,
     out: Path,
     workers: int,
-    progress: Callable[[Overview], None],
+    progress: Callable[[float, str], None],
     notice: Callable[[str], None],
     shipped: bool = False,
 ) -> tuple[ModelCard | FitFailure, ...]:
     """Fit models, the longest first, from wherever an earlier call left them, into a folder.
 
     Returns the results of the jobs, in their order. `workers` is the number of processes; 0 fits in
-    this one. `progress` is called a few times a second, `notice` with sentences for the user.
-    `shipped` copies each finished model into the package.
+    this one. `progress` is called a few times a second with the share of the work that is done, by
+    the costs in the catalogue, and what is at work; `notice` with sentences for the user. `shipped`
+    copies each finished model into the package.
 
     A model that fails does not stop the others. Raises `Stopped` on Ctrl-C and `UserError` when
     nothing can be fitted at all.
@@ -112,17 +102,18 @@ def run_jobs(
     executor = local(workers)
     make_folder(out)
     order = sorted(jobs, key=lambda job: -job.entry.cost)
-    running: dict[str, FitProgress | None] = {}
+    running: dict[str, FitProgress] = {}
     results: dict[str, ModelCard | FitFailure] = {}
 
     def show() -> None:
-        parts = {stem: moment.fraction for stem, moment in running.items() if moment}
-        parts |= dict.fromkeys(results, 1.0)
-        done = sum(job.entry.cost * parts.get(job.stem, 0.0) for job in order)
-        whole = sum(job.entry.cost for job in order)
-        progress(Overview(len(results), len(order), done / whole, dict(running)))
+        shares = {stem: moment.fraction for stem, moment in running.items()}
+        shares |= dict.fromkeys(results, 1.0)
+        done = sum(job.entry.cost * shares.get(job.stem, 0.0) for job in jobs)
+        whole = sum(job.entry.cost for job in jobs)
+        epochs = (f"{stem} epoch {moment.epoch + 1}" for stem, moment in running.items())
+        progress(done / whole, ", ".join((f"{len(results)}/{len(jobs)} models", *epochs)))
 
-    def receive(place: int, message: FitProgress | str | None) -> None:
+    def receive(place: int, message: FitProgress | str) -> None:
         if isinstance(message, str):
             notice(message)
         else:
@@ -132,26 +123,13 @@ def run_jobs(
     try:
         with locked(out, notice), executor:
             sweep(out)
-            for place, end in run_each(
-                executor, [partial(fit_job, j, data, out) for j in order], receive
-            ):
+            fits = [partial(fit_job, job, data, out) for job in order]
+            for place, end in run_each(executor, fits, receive):
                 job = order[place]
                 running.pop(job.stem, None)
-                details = out / f"{job.stem}.error.txt"
-                if isinstance(end, Returned):
-                    details.unlink(missing_ok=True)
-                    results[job.stem] = read_card(end.value, ModelCard)
-                    if shipped:
-                        ship(end.value)
-                elif isinstance(end, Lost):
-                    results[job.stem] = FitFailure(job, f"{end.how}; its epochs are kept")
-                elif isinstance(end.error, UserError):
-                    results[job.stem] = FitFailure(job, str(end.error))
-                else:
-                    traced = "".join(traceback.format_exception(end.error))
-                    details.write_text(traced, encoding="utf-8")
-                    error = f"{type(end.error).__name__}: {end.error}"
-                    results[job.stem] = FitFailure(job, error, details)
+                results[job.stem] = _result(job, end, out / f"{job.stem}.error.txt")
+                if isinstance(end, Returned) and shipped:
+                    ship(end.value)
                 show()
     except KeyboardInterrupt:
         done = sum(isinstance(result, ModelCard) for result in results.values())
@@ -162,10 +140,21 @@ def run_jobs(
     return tuple(results[job.stem] for job in jobs)
 
 
+def _result(job: FitJob, end: Any, details: Path) -> ModelCard | FitFailure:
+    if isinstance(end, Returned):
+        details.unlink(missing_ok=True)
+        return read_card(end.value, ModelCard)
+    if isinstance(end, Lost):
+        return FitFailure(job, f"{end.how}; its epochs are kept")
+    if isinstance(end.error, UserError):
+        return FitFailure(job, str(end.error))
+    details.write_text("".join(traceback.format_exception(end.error)), encoding="utf-8")
+    return FitFailure(job, f"{type(end.error).__name__}: {end.error}", details)
+
+
 @native.using(native.PORTABLE)
 def fit_job(job: FitJob, data: Path, out: Path) -> Path:
     """Fit a model and return its file; report progress a few times a second."""
-    send_message(None)  # it has begun: its data may take a while
     reported_s = 0.0
 
     def advance(moment: FitProgress) -> None:

@@ -32,6 +32,7 @@ from faultpath_quadrotor.training.windows import (
     Windows,
     correct,
     predict,
+    readers_of,
     windows_of,
 )
 
@@ -80,7 +81,7 @@ class PredictorTask(ModelTask):
         self._validation = Windows.join([validation for _, validation in pools])
         self._train, self.count = training, len(training)
         self._scales = scales(training)
-        readers = self._blank().readers()
+        readers = readers_of(self._blank())
         faults = dcc(readers, self._half_range) if self.is_dcc else ()
         self._delivered = corrupted(faults, readers, training.ids, self.seed, training.calibration)
 

@@ -99,13 +99,13 @@ class Windows:
             self.motor_thrust_n[k],
         )
 
-    def split(self, fraction_validation: float = 0.05) -> tuple[Windows, Windows]:
+    def split(self, validation_share: float = 0.05) -> tuple[Windows, Windows]:
         """Return the windows for training and those for validation, by episode.
 
         Pool and episode decide alone, whatever else is collected, joined or taken.
         """
         episodes = [name.rpartition("/")[0] for name in self.ids]
-        held_out = torch.from_numpy(validates(episodes, fraction_validation))
+        held_out = torch.from_numpy(validates(episodes, validation_share))
         return self.take(~held_out), self.take(held_out)
 
     @classmethod
@@ -188,12 +188,17 @@ DeliveredInputs = Mapping[tuple[str, str], Tensor]
 history and horizon."""
 
 
+def readers_of(model: Predictor) -> frozenset[str]:
+    """Return the names under which the interface lists the places where a model reads."""
+    return frozenset(f"predictor.{place}" for place in model.reads)
+
+
 def correct(model: Predictor, windows: Windows) -> DeliveredInputs:
     """Return the true calibration at every place at which a model reads it."""
     return {
         (channel, reader): value
         for channel, value in windows.calibration.items()
-        for reader in model.readers()
+        for reader in readers_of(model)
     }
 
 

@@ -5,6 +5,7 @@ The quadrotor, and torch with it, loads inside the functions.
 
 import os
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from faultpath.plugin.results import SafeConsole, Table
     from faultpath_quadrotor.checkpoint import ModelCard
     from faultpath_quadrotor.training.catalogue import FitJob
-    from faultpath_quadrotor.training.jobs import FitFailure, Overview
 
 EXAMPLE = "quadrotor gru gru+dcc --seed 0"
 
@@ -69,7 +69,7 @@ def command(
 
     from faultpath.plugin.data import make_folder
     from faultpath_quadrotor.training.catalogue import choose, stages
-    from faultpath_quadrotor.training.jobs import FitFailure, check_pilots
+    from faultpath_quadrotor.training.jobs import FitFailure, check_pilots, run_jobs
 
     data, out = data or Path("data"), out or Path("runs/train")
     workers = (os.cpu_count() or 1) if workers is None else workers
@@ -81,7 +81,14 @@ def command(
     status = 0
     for jobs in stages(chosen):  # models whose data are flown with other models come after those
         _collect(console, jobs, data, workers)
-        results = _fit(console, jobs, data, out, workers, ship)
+        with _progress(console) as bar:
+            whole = bar.add_task("Fitting", total=1.0, news="")
+            say = partial(console.print, markup=False, soft_wrap=True)
+
+            def show(done: float, news: str, bar: "Progress" = bar, task: "TaskID" = whole) -> None:
+                bar.update(task, completed=done, news=news)
+
+            results = run_jobs(jobs, data, out, workers, show, say, shipped=ship)
         for failure in (result for result in results if isinstance(result, FitFailure)):
             text = f"{failure.job.stem} was not fitted: {failure.error}"
             text += f" ({failure.details})" if failure.details else ""
@@ -106,23 +113,18 @@ def _models() -> "Table":
 
 def result_table(cards: "Sequence[ModelCard]") -> "Table":
     """Return the table of fitted models."""
-    from faultpath.plugin.results import Line, Table, line
+    from faultpath.plugin.results import Table, line
 
-    lines: list[Line] = []
-    for card in cards:
-        metric, value = next(iter(card.final.items()))
-        minutes, seconds = divmod(round(card.duration_s), 60)
-        lines.append(
-            line(
-                card.name,
-                str(card.seed),
-                f"{card.parameters:,}",
-                f"{card.training_loss[-1]:.4g}",
-                f"{metric} {value:.4g}",
-                f"{minutes}:{seconds:02d}",
-            )
-        )
     columns = ("seed", "parameters", "training loss", "validation", "time")
+    lines = (
+        line(
+            card.name,
+            *(str(card.seed), f"{card.parameters:,}", f"{card.training_loss[-1]:.4g}"),
+            "{} {:.4g}".format(*next(iter(card.final.items()))),
+            "{}:{:02d}".format(*divmod(round(card.duration_s), 60)),
+        )
+        for card in cards
+    )
     return Table(title="Fitted models", corner="model", columns=columns, lines=tuple(lines))
 
 
@@ -148,47 +150,12 @@ def _collect(console: "SafeConsole", jobs: "Sequence[FitJob]", data: Path, worke
             ) from None
 
 
-def _fit(
-    console: "SafeConsole",
-    jobs: "Sequence[FitJob]",
-    data: Path,
-    out: Path,
-    workers: int,
-    ship: bool,
-) -> "tuple[ModelCard | FitFailure, ...]":
-    from faultpath_quadrotor.training.jobs import run_jobs
-
-    with _progress(console) as bar:
-        whole = bar.add_task("Fitting", total=1.0, news="")
-        tasks: dict[str, TaskID] = {}
-
-        def show(overview: "Overview") -> None:
-            news = f"{overview.done}/{overview.total} models"
-            bar.update(whole, completed=overview.fraction, news=news)
-            for stem in set(tasks) - set(overview.running):
-                bar.remove_task(tasks.pop(stem))
-            for stem, moment in overview.running.items():
-                if stem not in tasks:
-                    tasks[stem] = bar.add_task(f"  {stem}", total=1.0, news="")
-                if moment is not None:
-                    news = f"epoch {moment.epoch + 1}, loss {moment.loss:.4g}"
-                    bar.update(tasks[stem], completed=moment.fraction, news=news)
-
-        def say(text: str) -> None:
-            bar.console.print(text, markup=False, soft_wrap=True)
-
-        return run_jobs(jobs, data, out, workers, show, say, shipped=ship)
-
-
 def _progress(console: "SafeConsole") -> "Progress":
     from rich import progress
 
     return progress.Progress(
-        progress.TextColumn("{task.description}"),
-        progress.BarColumn(),
-        progress.TextColumn("{task.fields[news]}"),
-        progress.TimeElapsedColumn(),
-        progress.TimeRemainingColumn(),
-        progress.TextColumn("left"),
+        *(progress.TextColumn("{task.description}"), progress.BarColumn()),
+        *(progress.TextColumn("{task.fields[news]}"), progress.TimeElapsedColumn()),
+        *(progress.TimeRemainingColumn(), progress.TextColumn("left")),
         console=console,
     )
