@@ -150,8 +150,11 @@ class Intervention(BaseModel, ABC):
 
         By default, because the numbers of a field that holds several do not fit it.
         """
-        fields: list[tuple[str, Any]] = [entry for entry in self if isinstance(entry[1], tuple)]
-        return next(filter(None, (misfit(name, value, shape) for name, value in fields)), None)
+        kind: str = type(self).model_fields["kind"].default
+        fields = [(name, value) for name, value in self if isinstance(value, tuple)]
+        labels = {self.value_field: kind}  # as fault text has it: `offset=0.1/0`
+        wrong = (misfit(labels.get(name, name), value, shape) for name, value in fields)
+        return next(filter(None, wrong), None)
 
 
 def number(value: Any) -> str:
