@@ -9,6 +9,7 @@ from typing_extensions import override
 from faultpath.core.arrays import HostArray
 from faultpath.core.errors import SystemMistake
 from faultpath.core.streams import generator
+from faultpath.system.arguments import check_call, truth_of
 from faultpath.system.episodes import Episode, EpisodePlant, Look, Measure, SceneInstance, Show
 from faultpath.system.observed import hashed
 
@@ -29,7 +30,8 @@ class FunctionPlant(EpisodePlant):
         dt_s: Length of a control step, s.
         succeeded: Says of each finished episode whether it was a success.
         metrics: Further measures of each finished episode, by name.
-        over: `over(state)` says whether the scene ends before its time; without it none does.
+        over: `over(state)` says of the state of one scene, true or false, whether it ends before its
+            time; without it none does.
         trace: `trace(state)` returns where it is, `(x, y)` or `(x, y, z)` in metres.
         render: `render(state)` returns points `(x, y)` of a line that draws it, in metres.
     """
@@ -49,6 +51,10 @@ class FunctionPlant(EpisodePlant):
         trace: Show | None = None,
         render: Show | None = None,
     ) -> None:
+        check_call("start", start, "rng")
+        check_call("step", step, "state, action, rng")
+        if over is not None:
+            check_call("over", over, "state")
         self._start, self._step, self._over = start, step, over
         super().__init__(
             observes=observes,
@@ -71,7 +77,11 @@ class FunctionPlant(EpisodePlant):
             nonlocal state
             draws = generator("plant/step", scene, seed, step)
             state = _given("step", self._step(state, action, draws))
-            return state, 0.0, self._over is not None and self._over(state), False, {}
+            over = self._over
+            ends = over is not None and truth_of(
+                "over", over, over(state), "the state of one scene"
+            )
+            return state, 0.0, ends, False, {}
 
         # What a step draws is addressed by scene and seed, so these are all that decides it.
         return SceneInstance(state, {}, hashed(state), hashed(scene, seed), step, lambda: state)
