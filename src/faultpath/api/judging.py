@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import os
 import re
 from collections.abc import Sequence
 from datetime import UTC, datetime
@@ -16,7 +17,7 @@ from faultpath.analyses.judging import PairedResults, pair_results
 from faultpath.analyses.model import AuditResult
 from faultpath.api.audit import concluded
 from faultpath.api.display import Display, display
-from faultpath.api.folders import MADE_FROM, RECORD, SYSTEM, as_text
+from faultpath.api.folders import MADE_FROM, RECORD, SYSTEM, as_text, parsed
 from faultpath.api.job import with_question_signature
 from faultpath.api.runs import Run
 from faultpath.core.errors import UserError
@@ -31,7 +32,7 @@ from faultpath.run.question import ask
 from faultpath.run.received.files import read_results
 from faultpath.run.received.question import JudgeQuestion
 from faultpath.run.shown import SystemShown, VariantShown
-from faultpath.run.store.folder import DELIVERIES, OUTCOMES, TRACES
+from faultpath.run.store.folder import DELIVERIES, OUTCOMES, TRACES, read_regular
 from faultpath.run.store.tables import encode_outcomes, encode_traces
 from faultpath.run.trials import Trials
 from faultpath.run.work.processes import local
@@ -75,6 +76,10 @@ def judge(
         )
 
     begin(folder)
+    if os.path.lexists(folder / RECORD):
+        before = parsed(read_regular(folder / RECORD), folder / RECORD, AuditResult)
+        if before.question != paired.question:
+            raise UserError(f"{folder} answers another question: give another folder with --out.")
     record = concluded(folder, paired.facts.library_hash, conclude)
     with locked(folder, shown.say):
         system = _system(paired.question)
