@@ -153,6 +153,14 @@ def test_a_costly_size_is_halved_at_all_readers_of_its_source():
     assert [kind for kind, _ in listed(record)] == ["cancel", "cancel"]
 
 
+def test_the_trials_announced_count_those_of_halved_sizes():
+    cost = SAID["costly sizes"][0]
+    record, *_ = scanned(Planted(cost, ("pair",)), scenes=70)
+    announced = planned(Planted(cost, ("pair",)), scenes=70)
+    assert announced.trials(20) < record.trials <= announced.at_most()
+    assert f"about {announced.at_most()} trials in all at most" in announced.notice()
+
+
 def test_a_repair_is_scanned_with_the_same_errors_and_tested_apart():
     record, *_ = scanned(Planted(both("one.a", "two.b")), repair="deaf")
     assert len(listed(record)) == 2

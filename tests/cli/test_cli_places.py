@@ -96,6 +96,8 @@ def test_pages_do_not_follow_a_link_out_of_the_run_folder(tmp_path: Path):
         ("map", "map.svg", "mine"),
         ("scan", "scan.svg", "mine"),
         ("judge", "record.json", "{}"),
+        ("judge", "notes.txt", "mine"),
+        ("audit", "notes.txt", "mine"),
     ],
 )
 def test_a_run_does_not_begin_among_files_of_somebody_else(
@@ -131,12 +133,38 @@ def test_no_file_of_a_run_or_of_somebody_else_is_replaced(
     assert page.read_bytes() == before
 
 
-@pytest.mark.parametrize(("first", "second"), [("audit", "map"), ("map", "audit")])
-def test_a_run_does_not_go_on_in_one_of_another_kind(first: str, second: str) -> None:
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_file_is_no_folder_for_a_run(command: str, tmp_path: Path) -> None:
+    results()
+    (place := tmp_path / "afile").write_text("mine")
+    for out in (place, place / "below"):
+        faultpath(*COMMANDS[command], "--out", out).refused("afile is a file: name a folder")
+    assert place.read_text() == "mine"
+
+
+QUESTIONS = COMMANDS | {
+    "scan of another error": [*COMMANDS["scan"], "--fault", "velocity:offset=0.1"],
+    "scan with another seed": [*COMMANDS["scan"], "--seeds", "1"],
+    "judge of one condition": [*COMMANDS["judge"], "--fault", "fog"],
+}
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        ("audit", "map"),
+        ("map", "audit"),
+        ("scan", "scan of another error"),
+        ("scan", "scan with another seed"),
+        ("judge", "judge of one condition"),
+    ],
+)
+def test_a_run_does_not_go_on_in_one_of_another_question(first: str, second: str) -> None:
     """The variants of a map may be others from round to round, but a map is no audit."""
-    assert faultpath(*COMMANDS[first], "--out", "run").status == 0
+    results()
+    assert faultpath(*QUESTIONS[first], "--out", "run").status == 0
     before = {path: path.read_bytes() for path in Path("run").iterdir() if path.is_file()}
-    faultpath(*COMMANDS[second], "--out", "run").refused("holds another run")
+    faultpath(*QUESTIONS[second], "--out", "run").refused("another")
     assert all(path.read_bytes() == data for path, data in before.items())
 
 

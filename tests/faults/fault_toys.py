@@ -19,6 +19,7 @@ INTERFACE = Interface(
             provenance=Provenance.ESTIMATED,
             correlation_group="calibration",
         ),
+        Source(name="spare", unit="1", provenance=Provenance.MEASURED),
         Source(name="seen_wind", unit="m/s", shape=(3,), provenance=Provenance.RECONSTRUCTED),
     ),
     channels=(

@@ -37,7 +37,7 @@ GROUPED = MASS.model_copy(update={"correlation_group": "mass"})
         ({"channels": (channel(readers=("a.b", "a.b")),)}, "reader 'a.b' is declared twice"),
         ({"channels": (channel(sources=("mass_estimat",)),)}, "did you mean 'mass_estimate'?"),
         ({"sources": (MASS, ZERO), "channels": (STRANGE,)}, "'zero_wind' ([3], m/s) cannot stand"),
-        ({"channels": (channel(erasure_default=(1.0, 2.0)),)}, "erasure_default has shape [2]"),
+        ({"channels": (channel(erasure_default=(1.0, 2.0)),)}, "erasure_default has 2 numbers"),
         ({"sources": (GROUPED,)}, "correlation group 'mass' has the name of a channel"),
         ({"reconstructs": {"observer": "mass_estimate"}}, "module 'observer' reads no channel"),
         ({"sources": (MASS, WIND), "reconstructs": TWICE}, "'observed_wind' is declared twice"),

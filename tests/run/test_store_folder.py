@@ -118,7 +118,7 @@ def test_a_shard_of_another_unit_or_of_other_scenes_is_not_taken(folder):
 @pytest.mark.parametrize(
     ("other", "what"),
     [
-        (_manifest(name="b"), "another name"),
+        (_manifest(name="b"), "another question"),
         (_manifest(seed=1), "another set of variants, faults or seeds"),
         (_manifest().model_copy(update={"code": _code(helper="2")}), r"other code.*: helper\)"),
         (_manifest().model_copy(update={"library_hash": "g"}), "another state of the library"),
@@ -150,9 +150,13 @@ def test_a_damaged_manifest_and_one_of_another_format_are_refused(folder, text, 
 def test_a_folder_that_cannot_be_made_is_refused(tmp_path):
     file = tmp_path / "file"
     file.touch()
-    for path in (file, file / "below", Path("/proc/faultpath-run")):
+    for path, said in (
+        (file, f"{file} is a file: name a folder"),
+        (file / "below", f"{file} is a file: name a folder"),
+        (Path("/proc/faultpath-run"), "/proc/faultpath-run"),
+    ):
         with (
-            pytest.raises(UserError, match=str(path)),
+            pytest.raises(UserError, match=said),
             RunFolder(path).open(_manifest(), _unexpected),
         ):
             pass

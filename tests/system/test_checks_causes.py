@@ -34,8 +34,11 @@ def test_a_fault_that_cannot_act_is_refused_and_one_that_changes_nothing_remarke
 @pytest.mark.parametrize(
     ("broken", "cause"),
     [
-        ("random", "every run differs: draw from faultpath.generator"),
-        ("kept generator", "the second run in a process differs: let run() keep nothing"),
+        ("random", "every run differs: draw from the `rng` of `step` or from fa"),
+        (
+            "kept generator",
+            "the second run in a process differs: keep what a module remembers in its `memory`",
+        ),
         ("hash of a text", "processes differ: look for hash()"),
     ],
 )

@@ -183,7 +183,7 @@ def test_modules_that_stand_for_each_other_under_two_names_are_a_remark():
 @pytest.mark.parametrize(
     ("kind", "status", "remark"),
     [
-        ("rounds", "passed", "differs by rounding alone, at most [1-9]e-1[5-7]"),
+        ("rounds", "passed", "differs by rounding alone, by at most [1-9]e-1[5-7]"),
         ("last digit", "not judged", "rounding cannot be told from dependence"),
         ("network", "passed", "differs by rounding alone"),
         ("network row by row", "passed", "^$"),

@@ -1,5 +1,6 @@
 """Wrong arguments of systems and plants are answered where they are handed over."""
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -7,7 +8,8 @@ import pytest
 
 from faultpath.core.error_source import location
 from faultpath.core.errors import SystemMistake
-from faultpath.run import SystemSpec, load_system
+from faultpath.run import SystemSpec, Treatment, load_system
+from faultpath.run.check.blocks import BlockSpec, run_block
 from faultpath.system import library_of
 
 OWN = Path(__file__).parents[2] / "src/faultpath/system/templates/numpy.py.txt"
@@ -54,6 +56,41 @@ MISTAKES = {
         "missed_m",
         "metrics: 'missed_m' is <function missed_m>: give a Measure",
     ),
+    "a unit that is left over": (
+        '"slope": "m',
+        '"slopes": "m", "slope": "m',
+        "units names 'slopes', which is no source; did you mean 'slope'",
+    ),
+    "a default": (
+        "observer(speed, push, gain, memory)",
+        "observer(speed, push, gain, memory, prior=0.5)",
+        "'prior' has a default and is no source: give constants with `.given.prior=0.5.`",
+    ),
+    "its own past": (
+        '@writes("slope", past="push")\ndef observer(speed',
+        '@writes("slope", past=("push", "slope"))\ndef observer(slope, speed',
+        "'observer': it reads 'slope', which it writes itself: keep the value .* in `memory`",
+    ),
+    "no return": (
+        "    return (-place",
+        "    (-place",
+        "module 'controller' returned None: is a `return` missing",
+    ),
+    "a module of one variant alone": (
+        "[typical, controller]",
+        "[controller]",
+        "variant 'typical': channel 'slope' is bound to source 'slope', which neither",
+    ),
+    "a step without noise": (
+        "def step(state, push, rng)",
+        "def step(state, push)",
+        r"`step` takes \(state, push\), but it is called as step\(state, action, rng\)",
+    ),
+    "over": (
+        "steps=100,",
+        "steps=100, over=lambda: True,",
+        r"called as over\(state\): give it 1 a",
+    ),
     "start": ('return {"place"', '{"place"', "`start` returned nothing: it must return the state"),
 }
 
@@ -74,7 +111,24 @@ def own(tmp_path):
 def test_a_wrong_argument_is_told_with_its_line_and_what_to_give(own, before, after, said) -> None:
     with pytest.raises(SystemMistake, match=said) as mistake:
         own(before, after)
-    assert "own.py, line " in location(mistake.value)
+    assert "own.py, line " in (mistake.value.location or location(mistake.value))
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "said"),
+    [
+        ("episode: missed_m(episode) <", "episode: 0 * missed_m(episode) +", "`succeeded` ret"),
+        (
+            "steps=100,",
+            "steps=100, over=lambda state: [True],",
+            r"`over` returned \[True\] of the state",
+        ),
+    ],
+)
+def test_what_is_neither_true_nor_false_is_told_with_its_line(own, before, after, said) -> None:
+    system = own(before, after)
+    run = run_block(system, BlockSpec(Treatment(variant="typical", seed=0), ("seed/0",)))
+    assert re.search(f"own.py, line [0-9]+: {said}.* it must return true or false", run.error)
 
 
 def test_seeds_may_be_an_array(own) -> None:

@@ -84,6 +84,42 @@ def test_scenes_set_up_in_another_way_are_no_pair():
     assert not set(twice) & set(disturbances(0.1))
 
 
+class Observed(Walk):
+    """A walker that says what it observes, as Gymnasium's pendulum does."""
+
+    def _get_obs(self):
+        return self._seen()
+
+
+class Stated(Walk):
+    """One that keeps its state in `state`, as Gymnasium's cart does."""
+
+    state = property(lambda self: (self.at,))
+
+
+def moved(env, rng):
+    env.unwrapped.at = 2 + rng.uniform(0, 0.5)
+
+
+def sloped(env, rng):
+    env.unwrapped.slope = rng.uniform(-0.1, 0.1)
+
+
+def test_modules_begin_with_what_is_observed_after_the_set_up():
+    built = plant(Observed, setup=moved, observation=lambda env: env.unwrapped._get_obs())
+    world = built.world(SCENES[0], 0)
+    assert world.observation[0] == world.view().unwrapped.at > 2
+    other = plant(Observed, setup=sloped, observation=lambda env: env.unwrapped._get_obs())
+    assert world.initial != other.world(SCENES[0], 0).initial
+
+
+@pytest.mark.parametrize(("environment", "call"), [(Observed, r"env\..*_get_obs"), (Stated, r"\.")])
+def test_a_set_up_that_outdates_the_first_observation_is_refused(environment, call) -> None:
+    with pytest.raises(SystemMistake, match=f"`observation=`, .* such as lambda env: {call}"):
+        plant(environment, setup=moved)
+    plant(environment, setup=sloped)
+
+
 def test_what_disturbs_a_step_is_drawn_by_scene_seed_and_step():
     drawn = []
 

@@ -17,6 +17,7 @@ from faultpath.api.display import Display, Show, display
 from faultpath.api.runs import MapRun, Run, ScanRun
 from faultpath.api.systems import Chosen, choose, executor_of
 from faultpath.core.errors import UserError
+from faultpath.core.text import unknown
 from faultpath.report.sentences.findings import describe
 from faultpath.run import Plan, SystemSpec
 from faultpath.run.code import system_code
@@ -80,7 +81,7 @@ def begin(
     """Read a question, build its system and find its scenes; `call` is the name of the function.
 
     `UserError` for what does not fit, named as its caller names it, for a library that does not
-    exist, and as `choose`.
+    exist, and as `choose`. Only where no library is named, a system's only one stands for it.
     """
     question = ask(model, arguments, isinstance(progress, Display) and progress.is_command)
     how = vars(question)
@@ -95,6 +96,9 @@ def begin(
             "'my_system.py:create', runs in several."
         )
     if library.name != question.library:
+        if "library" in question.model_fields_set:
+            name = unknown("library", question.library, (library.name,))
+            raise UserError(f"{chosen.system.name}: {name}")
         shown.say(f"Scenes of '{library.name}', the only library of this system.")
     return question, chosen, library, shown
 

@@ -31,16 +31,22 @@ def takes(model: type[UserQuestion], *without: str) -> Callable[[_Verb], _Verb]:
     """Give a verb the flags of a model.
 
     The verb has a last parameter `**arguments`, which gets what the line says, by the names of the
-    model. Fields named in `without` have no flag.
+    model; what it does not say is left to the model. Fields named in `without` have no flag.
     """
     fields = {name: field for name, field in model.model_fields.items() if name not in without}
 
     def decorate(verb: _Verb) -> _Verb:
         @wraps(verb)
-        def command(**line: Any) -> Any:
-            arguments = {name: line.pop(name) for name in fields}
-            for name, field in fields.items():
-                if field.default is True:
+        def command(context: typer.Context, **line: Any) -> Any:
+            values = {name: line.pop(name) for name in fields}
+            # Flags of a system are added to `options`, whether the line has `--set` or not.
+            arguments = {
+                name: value
+                for name, value in values.items()
+                if _is_said(context, name) or (name == "options" and value)
+            }
+            for name in arguments:
+                if fields[name].default is True:
                     arguments[name] = not arguments[name]
             if "options" in arguments:
                 pairs, arguments["options"] = arguments["options"] or (), {}
@@ -53,19 +59,26 @@ def takes(model: type[UserQuestion], *without: str) -> Callable[[_Verb], _Verb]:
                     if key in arguments["options"]:
                         raise UserError(f"the options name '{key}' twice: give it once.")
                     arguments["options"][key] = value
-            return verb(**line, **{k: v for k, v in arguments.items() if v is not None})
+            return verb(**line, **arguments)
 
         own = inspect.signature(verb).parameters.values()
         every = [parameter for parameter in own if parameter.kind != parameter.VAR_KEYWORD]
         every += [_parameter(model, name) for name in fields]
         every.sort(key=_advanced)
         # Arguments go before, then what is required; typer keeps the order within a panel.
+        every.append(inspect.Parameter("context", _KEYWORD, annotation=typer.Context))
         parameters = [parameter.replace(kind=_KEYWORD) for parameter in every]
         vars(command)["__signature__"] = inspect.Signature(parameters)
         # Its signature is the model's from here on, which no type can say.
         return command  # pyright: ignore[reportReturnType]
 
     return decorate
+
+
+def _is_said(context: typer.Context, name: str) -> bool:
+    """Return whether the line has an option, where it does not stand at its default."""
+    source = context.get_parameter_source(name)
+    return source is not None and source.name != "DEFAULT"
 
 
 def _advanced(parameter: inspect.Parameter) -> bool:

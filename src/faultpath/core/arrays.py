@@ -11,6 +11,8 @@ import array_api_compat
 import numpy as np
 from numpy.typing import NDArray
 
+from faultpath.core.text import counted
+
 Array: TypeAlias = Any
 """A NumPy array, or an array of any other namespace that `array_api_compat` knows."""
 
@@ -157,7 +159,15 @@ def misfit(name: str, value: Constant, shape: tuple[int, ...]) -> str | None:
     own = np.shape(np.asarray(value, dtype=np.float64))
     if not own or (len(own) <= len(shape) and shape[len(shape) - len(own) :] == own):
         return None
-    return f"{name} has shape {list(own)} and the reading of one scene has {list(shape)}"
+    reading = f"the reading of one scene has {_size(shape)}"
+    return f"{name} has {_size(own)}, and {reading}: give one number, or as many as it has"
+
+
+def _size(shape: tuple[int, ...]) -> str:
+    """Return `3 numbers`, or the shape of what has no or several axes."""
+    if not shape:
+        return "one number"
+    return counted(shape[0], "number") if len(shape) == 1 else f"the shape {list(shape)}"
 
 
 def to_numpy(array: Any) -> HostArray:

@@ -10,7 +10,8 @@ import re
 import sys
 import sysconfig
 import traceback
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from inspect import unwrap
 from typing import Any, cast
 
 from faultpath.core.errors import SystemMistake, UserError
@@ -46,6 +47,22 @@ def note_system(file: str) -> None:
     folder = os.path.dirname(os.path.realpath(file)) + os.sep
     if not folder.startswith(_STANDARD) or any(part in folder for part in _PACKAGES):
         _systems.add(folder)
+
+
+def location_of(function: Callable[..., Any]) -> str:
+    """Return file and line of a function; empty for any but a user's own."""
+    inner: Any = unwrap(function)
+    code = getattr(inner, "__code__", None)
+    if code is None or ours(inner.__module__):
+        return ""
+    return f"{near(code.co_filename)}, line {code.co_firstlineno}"
+
+
+def mistake_in(function: Callable[..., Any], sentence: str) -> SystemMistake:
+    """Return what is wrong with a function of a system, with its file and line."""
+    mistake = SystemMistake(sentence)
+    mistake.location = location_of(function)
+    return mistake
 
 
 def location(error: BaseException) -> str:

@@ -153,8 +153,14 @@ class Intervention(BaseModel, ABC):
 
         By default it checks the fields that hold several numbers.
         """
-        fields: list[tuple[str, Any]] = [entry for entry in self if isinstance(entry[1], tuple)]
-        return next(filter(None, (misfit(name, value, shape) for name, value in fields)), None)
+        kind: str = type(self).model_fields["kind"].default
+        labels = {self.value_field: kind}  # as fault text has it: `offset=0.1/0`
+        for name, value in self:
+            if isinstance(value, tuple):
+                numbers = cast("tuple[Any, ...]", value)
+                if wrong := misfit(labels.get(name, name), numbers, shape):
+                    return wrong
+        return None
 
 
 def number(value: Any) -> str:

@@ -13,7 +13,7 @@ from faultpath.core.text import listed, unknown
 from faultpath.core.validation_messages import misfit_of
 from faultpath.faults.fault import Fault, resolve
 from faultpath.faults.kinds import INTERVENTIONS, installed_kinds, intervention_of
-from faultpath.faults.text import FaultText, number_of
+from faultpath.faults.text import SEVERAL, FaultText, number_of
 from faultpath.interface import Interface, groups
 
 FaultPreset: TypeAlias = Callable[[float], tuple[Fault, ...]]
@@ -139,11 +139,21 @@ def _of_kind(
 ) -> tuple[Fault, ...]:
     channels = groups(interface) | {channel.name: (channel.name,) for channel in interface.channels}
     if part.name not in channels:
+        fed = [channel.name for channel in interface.channels if part.name in channel.sources]
+        if fed:
+            raise UserError(f"modules read '{part.name}' as '{listed(fed)}'; write {fed[0]}:{kind}")
+        if any(source.name == part.name for source in interface.sources):
+            read = listed(channel.name for channel in interface.channels)
+            raise UserError(f"no module reads '{part.name}'; they read: {read}")
         raise UserError(unknown("channel", part.name, channels))
     if kind not in _kinds():
-        raise UserError(unknown("kind", kind, _kinds()))
+        problem = unknown("kind", kind, _kinds())
+        raise UserError(f"{problem}; a kind of another package is known once that is installed")
     head, cls = f"{part.name}:{kind}", intervention_of(kind)
     fields = [field for field in cls.model_fields if field not in ("kind", cls.value_field)]
+    value_type = cls.model_fields[cls.value_field].annotation if cls.value_field else None
+    needs = SEVERAL if "tuple" in str(value_type) else "a number"
+    value = _value(kind, part.sizes[0], needs) if part.sizes and value_type is not str else None
     for key in options:
         if key not in fields:
             raise UserError(unknown("option", key, (*fields, *_ANY_FAULT)))
@@ -152,8 +162,7 @@ def _of_kind(
         if part.sizes:
             raise UserError(f"'{kind}' takes no value; write {head}")
     elif part.sizes:
-        size, annotation = part.sizes[0], cls.model_fields[cls.value_field].annotation
-        values[cls.value_field] = size if annotation is str else _value(kind, size)
+        values[cls.value_field] = part.sizes[0] if value is None else value
     elif cls.model_fields[cls.value_field].is_required():
         raise UserError(f"'{kind}' needs a value ({cls.value_field}), as in {head}=VALUE")
     try:
@@ -168,12 +177,12 @@ def _of_kind(
     )
 
 
-def _value(key: str, text: str) -> Any:
+def _value(key: str, text: str, needs: str = "a number") -> Any:
     if text in ("true", "false"):
         return text == "true"
     if text in _kinds():
         return {"kind": text}
     if "/" in text:
-        return tuple(number_of(key, part) for part in text.split("/"))
+        return tuple(number_of(key, part, needs) for part in text.split("/"))
     # An integer, so that a message repeats -1 and not -1.0.
-    return int(text) if re.fullmatch(r"[+-]?[0-9]{1,15}", text) else number_of(key, text)
+    return int(text) if re.fullmatch(r"[+-]?[0-9]{1,15}", text) else number_of(key, text, needs)

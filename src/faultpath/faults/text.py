@@ -143,8 +143,13 @@ class FaultText:
         return cls.read(value)
 
 
+SEVERAL = "a number, or several as 0.01/0"
+"""What is needed where a reading may be a vector."""
+
+
 def number_of(key: str, text: str, what: str = "a number") -> float:
-    """Return the number in a text; `UserError` names the `key` that it belongs to."""
+    """Return the number in a text; `UserError` names the `key` that it belongs to, and `what` it
+    needs."""
     try:
         return number_in(text)
     except ValueError as error:
@@ -153,6 +158,8 @@ def number_of(key: str, text: str, what: str = "a number") -> float:
 
 
 def _spread(item: str) -> tuple[str, ...]:
+    if item.strip()[:1] in ("[", "("):
+        raise UserError("several numbers are written with '/' and without brackets, as in 0.01/0")
     match = _RANGE.fullmatch(item)
     if match is None:
         if ".." in item:

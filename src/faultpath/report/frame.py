@@ -6,6 +6,7 @@ script, no handler in an attribute, no style attribute, no picture, frame, form 
 """
 
 import hashlib
+import os
 import re
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
@@ -16,7 +17,8 @@ from typing import Any
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
-from faultpath.core.files.atomic import begin, check_mark, write_text
+from faultpath.core.errors import UserError
+from faultpath.core.files.atomic import check_mark, is_run, make_folder, write_text
 from faultpath.core.text import counted
 from faultpath.core.version import __version__
 from faultpath.report.sentences import wording
@@ -61,12 +63,15 @@ def render(
 
 def write_pages(files: Mapping[str, str], folder: Path) -> list[Path]:
     """Write `report.html` and what belongs to it, each whole or not at all, and return the paths;
-    `UserError` where that cannot be, or files of somebody else stand."""
+    `UserError` where that cannot be, or other files are there."""
     page = folder / "report.html"
     if page.is_file() and not page.is_symlink():
         check_mark(page, PAGE)
-    else:
-        begin(folder)
+    elif not is_run(folder) and (
+        others := [name for name in files if os.path.lexists(folder / name)]
+    ):
+        raise UserError(f"{folder} holds {others[0]}, which is not of this run: give a new folder.")
+    make_folder(folder)
     for name, text in files.items():
         write_text(folder / name, text, folder)
     return [folder / name for name in files]

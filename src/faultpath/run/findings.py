@@ -45,12 +45,13 @@ class Deviation(Result):
             return f"could not be run again ({self.died}), which differs"
         if self.raised:
             return f"failed the second time ({self.raised}), which differs"
-        parts = [f"{self.ended} end otherwise" if self.ended else "none ends otherwise"]
+        ended = f"{counted(self.ended, 'trial')} with another end"
+        parts = [ended if self.ended else "every trial with the same end"]
         for name, gap in self.gaps:
-            label = "what readers got" if name == "trajectory_hash" else name
-            parts.append(f"{label} too" if gap is None else f"{label} by up to {gap:.3g}")
-        count = f"{len(self.scenes)} of {self.of}"
-        return f"differs in {count}, {self.scenes[0]!r} for one ({', '.join(parts)})"
+            label = "readings" if name == "trajectory_hash" else name
+            parts.append(f"other {label}" if gap is None else f"{label} by up to {gap:.3g}")
+        count = f"{len(self.scenes)} of {counted(self.of, 'scene')}"
+        return f"differs in {count}, such as {self.scenes[0]!r} ({', '.join(parts)})"
 
 
 class Recheck(Result):

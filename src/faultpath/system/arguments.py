@@ -4,13 +4,18 @@ Each function raises `SystemMistake` with a sentence that says what is wrong and
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from inspect import signature
 from math import isfinite
 from numbers import Integral, Real
 from operator import index
 from typing import Any, cast
 
+import numpy as np
+
+from faultpath.core.error_source import mistake_in
 from faultpath.core.errors import SystemMistake
+from faultpath.core.text import counted
 from faultpath.loop import Module
 from faultpath.system import declared
 from faultpath.system.outcome import Metric
@@ -92,6 +97,34 @@ def check_episode(steps: Any, dt_s: Any, succeeded: Any, metrics: Any) -> None:
                 f"metrics: '{name}' is {shown(measure)}: give a Measure, such as "
                 "Measure(Metric(unit='m', better='less'), function)"
             )
+
+
+def check_call(name: str, function: Any, arguments: str) -> None:
+    """Raise `SystemMistake` for what cannot be called with these arguments, named in a text."""
+    if not callable(function):
+        raise SystemMistake(f"{name} is {shown(function)}: give a function")
+    names = arguments.split(", ")
+    try:
+        takes = signature(function)
+    except ValueError:  # such as that of `dict`
+        return
+    try:
+        takes.bind(*names)
+    except TypeError:
+        raise mistake_in(
+            function,
+            f"`{name}` takes {takes}, but it is called as {name}({arguments}): give it "
+            f"{counted(len(names), 'argument')}",
+        ) from None
+
+
+def truth_of(name: str, function: Callable[..., Any], value: Any, of: str) -> bool:
+    """Return what a function says; `SystemMistake` where that is neither true nor false."""
+    if type(value) not in (bool, np.bool_):
+        raise mistake_in(
+            function, f"`{name}` returned {shown(value)} of {of}: it must return true or false"
+        )
+    return bool(value)
 
 
 def _mapping(name: str, value: Any, example: str) -> Mapping[str, Any]:

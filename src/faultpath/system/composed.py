@@ -14,7 +14,14 @@ from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.text import unknown
 from faultpath.interface import Interface
 from faultpath.loop import Batch, Loop, Module, Reading, graph, interface_of
-from faultpath.system.arguments import channels_of, modules_of, seeds_of, units_of, variants_of
+from faultpath.system.arguments import (
+    channels_of,
+    modules_of,
+    seeds_of,
+    shown,
+    units_of,
+    variants_of,
+)
 from faultpath.system.checks import UNNAMED
 from faultpath.system.declared import Library, SceneRef
 from faultpath.system.episodes import SCENE, EpisodePlant
@@ -28,6 +35,8 @@ SCENES: Mapping[str, Sequence[int]] = {
     "held-out": range(1000, 1100),
 }
 """Default libraries of a system, and the seeds of their scenes."""
+_MISSPELT = 0.85
+"""Likeness from which on a name is taken for another one misspelt, though that stands there too."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +114,10 @@ class ComposedSystem(LoopSystem):
         recorder = _ShapeRecorder()
         for variant in self._parts:
             wired = self.wirings[variant].bindings
-            executable = graph(self._interface, plant, self.modules(variant, None), wired)
+            try:
+                executable = graph(self._interface, plant, self.modules(variant, None), wired)
+            except SystemMistake as error:
+                raise SystemMistake(f"variant '{variant}': {error}") from None
             batch = Batch((f"{SCENE}0",), 0, self.control_dt_s)
             first = next(
                 iter(Loop(self._interface, executable).execute(batch, cast("Any", recorder)))
@@ -180,12 +192,14 @@ class ComposedSystem(LoopSystem):
             for port in sorted(module.ports):
                 if not {*feeds[port.channel]} & {*plant.senses, *plant.facts, *written}:
                     there = list(dict.fromkeys((*plant.senses, *plant.facts, *written)))
-                    wrong = unknown("source", port.channel, there)
-                    mistake = SystemMistake(
-                        f"system '{self.name}': module '{module.name}': {wrong}"
-                    )
-                    mistake.location = module.location if isinstance(module, FunctionModule) else ""
-                    raise mistake
+                    raise self._unread(module, port.channel, there)
+            reads = {name for port in module.ports for name in feeds[port.channel]}
+            if own := (reads & {*module.writes}) - {*known}:
+                raise self._mistake(
+                    module,
+                    f"it reads '{min(own)}', which it writes itself: keep the value of the step "
+                    "before in `memory`",
+                )
         if plant.action in feeds and not {*feeds[plant.action]} & {*written}:
             raise SystemMistake(
                 f"system '{self.name}': no module writes what the plant's action names: "
@@ -216,17 +230,34 @@ class ComposedSystem(LoopSystem):
         except UserError as error:
             raise SystemMistake(f"system '{self.name}': {error}") from None
 
+    def _mistake(self, module: Module, sentence: str) -> SystemMistake:
+        mistake = SystemMistake(f"system '{self.name}': module '{module.name}': {sentence}")
+        mistake.location = module.location if isinstance(module, FunctionModule) else ""
+        return mistake
+
+    def _unread(self, module: Module, name: str, sources: Sequence[str]) -> SystemMistake:
+        """Return what is wrong with an argument that is no source."""
+        defaults = module.defaults if isinstance(module, FunctionModule) else {}
+        if name not in defaults:
+            return self._mistake(module, unknown("source", name, sources))
+        constant = f"`.given({name}={shown(defaults[name])})`"
+        return self._mistake(
+            module, f"'{name}' has a default and is no source: give constants with {constant}"
+        )
+
     def _check_units(self, units: Mapping[str, Any], sources: Sequence[str]) -> None:
-        """Refuse a source without a unit; if its name seems misspelt in `units`, say so."""
+        """Refuse sources without a unit, and names that seem misspelt; others may be of sources
+        that another variant has."""
         spare = [name for name in units if name not in sources]
         for source in sources:
-            if source in units:
-                continue
-            if misspelt := get_close_matches(source, spare, n=1):
+            cutoff = _MISSPELT if source in units else 0.6
+            if misspelt := get_close_matches(source, spare, 1, cutoff):
                 raise SystemMistake(
                     f"system '{self.name}': units names '{misspelt[0]}', which is no source; did "
                     f"you mean '{source}'?"
                 )
+            if source in units:
+                continue
             raise SystemMistake(
                 f"system '{self.name}': source '{source}' has no unit: add it to units, '1' for a "
                 "number without one"

@@ -12,7 +12,7 @@ from faultpath.core.arrays import HostArray, to_numpy
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import unknown
 from faultpath.loop import Batch, Inputs, Plant, Port, Progress
-from faultpath.system.arguments import check_episode
+from faultpath.system.arguments import check_episode, truth_of
 from faultpath.system.observed import Selector, select
 from faultpath.system.outcome import Metric
 
@@ -259,13 +259,8 @@ class EpisodePlant(Plant):
             signals = {name: np.stack([rows[i] for rows in log]) for name, log in state.log.items()}
             rewards = np.array([row[i] for row in state.rewards])
             episode = Episode(signals, rewards, bool(terminated[i]), info[i], self.dt_s)
-            success: Any = self._succeeded(episode)
-            if type(success) not in (bool, np.bool_):
-                raise SystemMistake(
-                    f"`succeeded` returned {success!r:.80} of an episode: it must return true or "
-                    "false"
-                )
-            succeeded[i] = success
+            success = self._succeeded(episode)
+            succeeded[i] = truth_of("succeeded", self._succeeded, success, "an episode")
             for name, measure in self.metrics.items():
                 state.metrics[name][i] = measure.of(episode)
             crashed[i] = terminated[i] and not succeeded[i]

@@ -9,6 +9,7 @@ from typing_extensions import override
 from faultpath.core.arrays import HostArray
 from faultpath.core.errors import SystemMistake
 from faultpath.core.streams import generator
+from faultpath.system.arguments import check_call, truth_of
 from faultpath.system.episodes import Episode, EpisodePlant, Measure, SceneInstance, Selector, Show
 from faultpath.system.observed import hashed
 
@@ -28,7 +29,8 @@ class FunctionPlant(EpisodePlant):
         dt_s: Length of a control step, s.
         succeeded: Returns whether a finished episode was a success.
         metrics: Further measures of each finished episode, by name.
-        over: `over(state)` returns whether the scene ends early; without it none does.
+        over: `over(state)` returns whether one scene ends early, true or false, from its state;
+            without it none does.
         trace: `trace(state)` returns the position, `(x, y)` or `(x, y, z)` in metres.
         render: `render(state)` returns points `(x, y)` of a line that draws it, in metres.
     """
@@ -48,6 +50,10 @@ class FunctionPlant(EpisodePlant):
         trace: Show | None = None,
         render: Show | None = None,
     ) -> None:
+        check_call("start", start, "rng")
+        check_call("step", step, "state, action, rng")
+        if over is not None:
+            check_call("over", over, "state")
         self._start, self._step, self._over = start, step, over
         super().__init__(
             observes=observes,
@@ -70,7 +76,11 @@ class FunctionPlant(EpisodePlant):
             nonlocal state
             draws = generator("plant/step", scene, seed, step)
             state = _required("step", self._step(state, action, draws))
-            return state, 0.0, self._over is not None and self._over(state), False, {}
+            over = self._over
+            ends = over is not None and truth_of(
+                "over", over, over(state), "the state of one scene"
+            )
+            return state, 0.0, ends, False, {}
 
         # A step's random numbers are addressed by scene and seed, so these identify the
         # disturbance.

@@ -18,6 +18,7 @@ from faultpath.core.arrays import HostArray
 from faultpath.core.errors import SystemMistake
 from faultpath.core.streams import generator
 from faultpath.core.trees import release
+from faultpath.system.arguments import check_call
 from faultpath.system.episodes import (
     SCENE,
     Episode,
@@ -54,6 +55,9 @@ class GymnasiumPlant(EpisodePlant):
         setup: Called as `setup(env, rng)` for each scene, after its seeded reset, to set model
             parameters and disturbances. The values that it returns by name are sources too, and
             are hashed: two trials whose scenes were set up differently are no pair.
+        observation: `observation(env)` returns what modules observe at the start. A `setup` that
+            changes that, as by setting the environment's state, needs it; default what the reset
+            returned.
         on_step: Called as `on_step(env, rng, step)` before each step, to disturb the scene. `rng`
             gives other numbers at each step and seed, and the same for every variant and condition.
         trace: `trace(env)` returns the position, `(x, y)` or `(x, y, z)` in metres, for the report.
@@ -71,16 +75,26 @@ class GymnasiumPlant(EpisodePlant):
         steps: int | None = None,
         dt_s: float | None = None,
         setup: Setup | None = None,
+        observation: Callable[[Any], Any] | None = None,
         on_step: OnStep | None = None,
         trace: Show | None = None,
         render: Show | None = None,
     ) -> None:
+        for name, function, arguments in (
+            ("setup", setup, "env, rng"),
+            ("observation", observation, "env"),
+            ("on_step", on_step, "env, rng, step"),
+        ):
+            if function is not None:
+                check_call(name, function, arguments)
         self._environment, self._setup, self._on_step = environment, setup, on_step
-        self._limit = steps
+        self._limit, self._observation = steps, observation
         sample = self._make()
         self.identity, self.code = _identity(sample), _code(sample)
         steps = steps or getattr(sample.spec, "max_episode_steps", None)
         dt_s = dt_s or getattr(sample.unwrapped, "dt", None)
+        if setup is not None and observation is None:
+            _check_observation(sample, setup)
         sample.close()
         for what, value in {"steps": steps, "dt_s": dt_s}.items():
             if not value:
@@ -110,6 +124,9 @@ class GymnasiumPlant(EpisodePlant):
             rng = generator("environment/setup", scene, 0)
             facts = self._setup(env, rng) or {}
             disturbance = hashed((sorted(facts.items()), rng.bit_generator.state))
+        if self._observation:
+            observation = self._observation(env)
+            initial = hashed(initial, observation)
         if self._on_step:  # its random numbers are addressed by scene and seed
             disturbance = hashed(disturbance, scene, seed)
 
@@ -142,6 +159,34 @@ class GymnasiumPlant(EpisodePlant):
             return self._environment()
         limit: dict[str, Any] = {} if self._limit is None else {"max_episode_steps": self._limit}
         return gymnasium.make(self._environment, **limit)
+
+
+def _check_observation(env: Any, setup: Setup) -> None:
+    """Raise `SystemMistake` where `setup` is seen to change what the reset observed.
+
+    No call of Gymnasium's observes without a step. What shows it is `state`, where environments of
+    Gymnasium keep theirs, and `_get_obs`, where it returns the same when it is called twice.
+    """
+
+    def read() -> tuple[str, str]:
+        inner = env.unwrapped
+        try:
+            observed = hashed(inner._get_obs())
+        except Exception:  # somebody's private function, which may take arguments or be none
+            observed = ""
+        return hashed(getattr(inner, "state", None)), observed
+
+    env.reset(seed=0)
+    first, before = read(), read()
+    setup(env, generator("environment/setup", f"{SCENE}0", 0))
+    after = read()
+    if any(a == b != c for a, b, c in zip(first, before, after, strict=True)):
+        call = "env.unwrapped._get_obs()" if after[1] else "..."
+        raise SystemMistake(
+            "`setup` changes what the environment observes, and its first observation is from "
+            "before: give `observation=`, a function of the environment that returns it after "
+            f"`setup`, such as lambda env: {call}"
+        )
 
 
 def _identity(env: Any) -> str:

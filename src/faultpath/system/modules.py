@@ -2,16 +2,16 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
-from inspect import Parameter, signature, unwrap
+from inspect import Parameter, signature
 from typing import Any, cast
 
 import numpy as np
 from typing_extensions import override
 
 from faultpath.core.arrays import is_array, namespace
-from faultpath.core.error_source import described, location, ours
+from faultpath.core.error_source import described, location, location_of, mistake_in
 from faultpath.core.errors import SystemMistake
-from faultpath.core.text import near, unknown
+from faultpath.core.text import unknown
 from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
 from faultpath.system.tapping import SceneObjects
 
@@ -132,15 +132,22 @@ class FunctionModule(Module):
     @property
     def location(self) -> str:
         """File and line of a user's function; empty for any other."""
-        function: Any = unwrap(self._function)
-        code = getattr(function, "__code__", None)
-        if code is None or ours(function.__module__):
-            return ""
-        return f"{near(code.co_filename)}, line {code.co_firstlineno}"
+        return location_of(self._function)
+
+    @property
+    def defaults(self) -> dict[str, Any]:
+        """Defaults of arguments, which are never used: each argument is a source or given."""
+        parameters = signature(self._function).parameters
+        named = {name: parameter.default for name, parameter in parameters.items()}
+        return {k: v for k, v in named.items() if v is not Parameter.empty}
 
     @property
     def _numbers(self) -> dict[str, int | float]:
         return {n: v for n, v in self._values.items() if isinstance(v, int | float)}
+
+    def _returned_nothing(self) -> SystemMistake:
+        sentence = f"module '{self.name}' returned None: is a `return` missing?"
+        return mistake_in(self._function, sentence)
 
     def _refused(self, numbers: Iterable[str], error: Exception) -> SystemMistake:
         """Return the message for an error at the first step of a module with given numbers."""
@@ -175,7 +182,10 @@ class FunctionModule(Module):
                 )
         with scene.reading(inputs, i) as objects:
             arguments = {name: rows[name] for name in self._called_with}
-            scene.last = np.array(self._function(objects, **arguments))
+            value = self._function(objects, **arguments)
+            if value is None:
+                raise self._returned_nothing()
+            scene.last = np.array(value)
         return scene
 
     @override
@@ -197,6 +207,8 @@ class FunctionModule(Module):
             if inputs.step == 0 and not writes_input and (numbers := self._numbers):
                 raise self._refused(numbers, error) from error
             raise
+        if pair is None:
+            raise self._returned_nothing()
         if not self._remembers:
             if not rows and isinstance(pair, int | float) and inputs.running is not None:
                 pair = np.full(
@@ -204,8 +216,9 @@ class FunctionModule(Module):
                 )
             return {self.writes[0]: pair}, None
         if not isinstance(pair, tuple) or len(cast("tuple[Any, ...]", pair)) != 2:
-            raise SystemMistake(
-                f"module '{self.name}' has a memory and returned no pair: return (value, memory)"
+            raise mistake_in(
+                self._function,
+                f"module '{self.name}' has a memory and returned no pair: return (value, memory)",
             )
         value, memory = cast("tuple[Any, Any]", pair)
         return {self.writes[0]: value}, memory

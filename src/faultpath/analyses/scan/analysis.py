@@ -116,6 +116,12 @@ class ScanAnalysis(Analysis[Scanned]):
         most = self.trials(len(self.others))
         return most if self.question.scenes is not None else min(TRIALS, most)
 
+    def at_most(self) -> int:
+        """Return about how many trials there will be at most, with those of halved sizes."""
+        halved = self.per_scene * HALVINGS * len(self.errors) * len(self.first)
+        most = self.trials(len(self.others)) + halved
+        return most if self.question.scenes is not None else min(TRIALS, most)
+
     def trials(self, second: int) -> int:
         """Return the trials of a scan with so many scenes in its second stage, at most, without
         those of halved sizes."""
@@ -179,8 +185,8 @@ class ScanAnalysis(Analysis[Scanned]):
         first = self.per_scene * (1 + len(self.errors)) * len(self.first)
         return (
             f"{len(self.errors)} errors alone in {len(self.first)} scenes first, {first} trials; "
-            "then pairs of those that cost success, in other scenes, about "
-            f"{self.expected()} trials in all at most."
+            "then halves of sizes that cost too much, and pairs of those that cost success, in "
+            f"other scenes, about {self.at_most()} trials in all at most."
         )
 
     def plan(self, tried: Iterable[ScanError], scanned: Scanned | None = None) -> Plan:
@@ -192,8 +198,10 @@ class ScanAnalysis(Analysis[Scanned]):
             for places in scanned.conditions:
                 rows += self._rows([scanned.errors[place] for place in places], scanned.second)
             scenes += scanned.second
+        # Rounds of one scan share a folder, and those of another question must not.
+        seeds = ",".join(map(str, self.question.seeds))
         return Plan(
-            name=self.named[0],
+            name=f"{'-'.join(self.named[:-1])}-seeds-{seeds}",
             system=self.spec,
             library=self.facts.library,
             scenes=scenes,

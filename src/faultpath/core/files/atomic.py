@@ -18,8 +18,6 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.opening import LARGEST_TEXT, contents, opened, unlike_file
 
 _PREFIX = ".partial-"
-_KINDS = (".csv", ".html", ".json", ".md", ".parquet", ".svg")
-"""Kinds of files that a run writes into its folder."""
 Say = Callable[[str], None]
 
 
@@ -82,9 +80,19 @@ def begin(folder: Path) -> None:
 
 
 def check_free(folder: Path) -> None:
-    """Raise `UserError` for a folder with files that a new run there might replace."""
-    if names := sorted(file.name for file in folder.glob("*") if file.suffix in _KINDS):
+    """Raise `UserError` for a folder in which a run would begin among other files."""
+    if names := sorted(file.name for file in folder.glob("*") if not file.name.startswith(".")):
         raise UserError(f"{folder} holds {names[0]}, which is not of this run: give a new folder.")
+
+
+def check_folder(path: Path) -> None:
+    """Raise `UserError` where something else than a folder stands, at its place or above."""
+    for part in (path, *path.parents):
+        with suppress(OSError):
+            mode = part.stat().st_mode
+            if not stat.S_ISDIR(mode):
+                raise UserError(f"{part} is {unlike_file(mode) or 'a file'}: name a folder.")
+            return
 
 
 def check_output(path: Path, mark: bytes | None = None) -> None:
@@ -122,6 +130,7 @@ def check_writable(path: Path) -> None:
 
 def make_folder(path: Path) -> None:
     """Make a folder and its parents unless they exist; `UserError` where that fails."""
+    check_folder(path)
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -82,7 +82,7 @@ def run_checks(
     variants = chosen_variants(system, question.variants)
     workers = (2 if system.parallel else 1) if question.workers is None else question.workers
     seen = Seen(system, variants, scenes, question.seed, workers > 0)
-    built = Built.of(system, spec, question.library)
+    built = Built.of(system, spec, library.name)
 
     def run(blocks: Sequence[BlockSpec], workers: int = workers) -> None:
         known = len(seen.runs) + len(blocks) if seen.runs else None

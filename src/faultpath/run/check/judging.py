@@ -21,12 +21,13 @@ _CAUSES = {
     (
         True,
         True,
-    ): "every run differs: draw from faultpath.generator, and look for clocks and threads.",
+    ): "every run differs: draw from the `rng` of `step` or from faultpath.generator, not from "
+    "np.random, and look for clocks and threads.",
     (
         False,
         True,
-    ): "the second run in a process differs: let run() keep nothing from one call to the "
-    "next, such as a counter, a cache or a generator made once.",
+    ): "the second run in a process differs: keep what a module remembers in its `memory`, and "
+    "nothing in global variables, such as a counter, a cache or a generator made once.",
     (
         True,
         False,
@@ -92,8 +93,9 @@ def _determinism(name: str, seen: Seen) -> Check:
     failures = list[str]()
     for variant in seen.unsteady():
         cause = (
-            "take random numbers from faultpath.generator, and keep nothing from one call of run() "
-            "to the next; in worker processes, a check can tell the two apart."
+            "draw from the `rng` of `step` or from faultpath.generator, not from np.random, and "
+            "keep what a module remembers in its `memory`, not in a global variable; in worker "
+            "processes, a check can tell the two apart."
         )
         if seen.apart:
             between = bool(seen.differs(variant, "anew", "alone"))
@@ -129,10 +131,11 @@ def _independence(name: str, seen: Seen) -> Check:
                 "rounding cannot be told from dependence: use faultpath.system.row_wise."
             )
         else:
+            size = f"by at most {gap:.1g} of a value" if gap else "in digits that no sum shows"
             remarks.append(
-                f"{lead} differs by rounding alone, at most {gap:.1g} of a number's size, as it "
-                "does where readings change in their last digits: only with blocks of the same "
-                "scenes does an audit repeat to the bit."
+                f"{lead} differs by rounding alone, {size}, as it does where readings change in "
+                "their last digits: only with blocks of the same scenes does an audit repeat to "
+                "the bit."
             )
     bits = "other bits" if failures else "the same to rounding" if remarks else "the same bits"
     says = f"in another order and without some others, {bits}"

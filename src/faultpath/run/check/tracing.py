@@ -63,10 +63,11 @@ def trace_system(system: System, spec: SystemSpec, question: TraceQuestion) -> T
     """
     variant, steps = question.variant or next(iter(system.variants)), question.steps
     readers = chosen_variants(system, (variant,))[0].readers
-    known = [ref.id for ref in library_of(system, question.library).scenes]
+    library = library_of(system, question.library)
+    known = [scene.id for scene in library.scenes]
     scene = known[0] if question.scene is None else question.scene
     if scene not in known:
-        raise UserError(f"library '{question.library}': {unknown('scene', scene, known)}")
+        raise UserError(f"library '{library.name}': {unknown('scene', scene, known)}")
     faults = () if question.fault is None else system.fault(question.fault)
     faults = reaching(faults, readers)
     treatment = Treatment(variant=variant, faults=faults, seed=question.seed)
@@ -92,7 +93,7 @@ def trace_system(system: System, spec: SystemSpec, question: TraceQuestion) -> T
         system=spec.name,
         options=spec.options,
         variant=variant,
-        library=question.library,
+        library=library.name,
         scene=scene,
         seed=question.seed,
         steps=steps,

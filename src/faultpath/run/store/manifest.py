@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from faultpath.core.errors import UserError
+from faultpath.core.files.atomic import check_folder
 from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.plain import Misread, model_of, read_json
 from faultpath.core.results import Frozen
@@ -33,6 +34,7 @@ class Manifest(Frozen):
 
 def read_manifest(path: Path) -> Manifest | None:
     """Read a manifest, `None` when there is none; `UserError` when this version cannot use it."""
+    check_folder(path.parent)
     try:
         data = contents(path, LARGEST_TEXT)
         content: Any = read_json(data)
@@ -62,7 +64,7 @@ def check_same(folder: Path, previous: Manifest, manifest: Manifest, shared: boo
     mine, theirs = manifest.plan, previous.plan
     compared: dict[str, tuple[object, object]] = {
         "version of faultpath": (previous.faultpath_version, manifest.faultpath_version),
-        "name": (theirs.name, mine.name),
+        "question": (theirs.name, mine.name),
         "system": (theirs.system, mine.system),
         "library": (theirs.library, mine.library),
         "state of the library": (previous.library_hash, manifest.library_hash),
