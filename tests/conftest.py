@@ -2,9 +2,11 @@
 
 import secrets
 import signal
+import sys
 from collections.abc import Callable, Iterator
 from importlib import import_module
 from importlib.util import find_spec
+from pathlib import Path
 
 import pytest
 from engine_alone import EngineAlone
@@ -13,6 +15,8 @@ from hypothesis import settings
 settings.register_profile("fixed", derandomize=True, database=None, deadline=None)
 settings.register_profile("explore", derandomize=False, max_examples=500, deadline=None)
 settings.load_profile("fixed")
+
+sys.path.insert(0, str(Path(__file__).with_name("toys")))
 
 
 # A shell's background starts its commands deaf to Ctrl-C, and what they start would be deaf too.

@@ -31,7 +31,7 @@ PAPER = find_spec("faultpath_paper") is not None
 """The engine's tests run without it under other Pythons."""
 HERE = Path(__file__).resolve().parent
 NUMBERS = HERE / "numbers.json"
-SYSTEM = f"{HERE / 'golden_system.py'}:create"
+SYSTEM = f"{HERE.parent / 'toys' / 'weighed.py'}:golden"
 HEADER = "variant,scene,seed,task,condition,success,initial\n"
 
 FAILED = "once/s003/0,twice/s004/1,twice/s003/1,once/s010/0,once/s010/1"

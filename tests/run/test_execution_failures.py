@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from toy_study import SCENES, SYSTEM, UNITS, study, study_of
-from toy_system import STEPS, ToySystem
+from weighed import ToySystem
 
 from faultpath.core.errors import UserError
 from faultpath.loop import Reading
@@ -172,7 +172,7 @@ def test_a_scene_that_fails_loses_itself_alone(undisturbed, tmp_path):
         else:
             assert row.outcome.metrics == expected.outcome.metrics
     (planner,) = result.deliveries.at("plain", "correct")
-    assert planner.deliveries == 2 * STEPS * (len(SCENES) - 1)
+    assert planner.deliveries == 2 * ToySystem.steps * (len(SCENES) - 1)
     assert len(result.failures) == len(study().treatments())
     for failure in result.failures:
         assert failure.scene == "s05"

@@ -12,6 +12,7 @@ import pytest
 from calls import alive, end_of, until
 from ray_nodes import cluster, node
 from toy_study import SYSTEM, UNITS, study, study_of
+from written import written
 
 import faultpath
 from faultpath.core.errors import Notice, Stopped, UserError
@@ -25,16 +26,11 @@ from faultpath.run.work.ray_cluster import RayWorkers
 UNRULY = Path(__file__).with_name("test_execution_failures.py")
 OTHER = """
 import os
-from toy_system import ToySystem
-
-class Other(ToySystem):
-    def fingerprint(self):
-        return os.environ.get("PLACE", "there")
-
-def create(**options) -> Other:
+Mine.fingerprint = lambda self: os.environ.get("PLACE", "there")
+def create(**options) -> Mine:
     if options.get("needs") not in os.environ:
         raise OSError(f"{options['needs']} is not set")
-    return Other()
+    return Mine()
 """
 pytestmark = pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::FutureWarning")
 
@@ -167,9 +163,8 @@ def test_an_audit_that_was_stopped_on_a_cluster_goes_on_there_to_the_same_bytes(
 )
 def test_a_node_with_another_system_is_named(head, tmp_path, monkeypatch, option, says):
     monkeypatch.setenv("PLACE", "here")  # a node keeps the environment in which it was started
-    file = tmp_path / "other.py"
-    file.write_text(OTHER)
-    spec = SystemSpec(name=f"{file}:create", options={"needs": option})
+    system = written(tmp_path, base="weighed.ToySystem", create=OTHER)
+    spec = SystemSpec(name=system, options={"needs": option})
     asked = study().model_copy(update={"system": spec})
     with RayWorkers(head.address, 1) as hands, pytest.raises(UserError, match=says):
         run_study(asked, tmp_path / "run", executor=hands)

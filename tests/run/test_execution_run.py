@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from toy_study import FAULT, SCENES, UNITS, rows, study
-from toy_system import STEPS
+from weighed import ToySystem
 
 from faultpath.core.errors import UserError
 from faultpath.core.files import parquet
@@ -89,8 +89,8 @@ def test_a_selection_in_any_order_gives_the_rows_of_the_whole(whole, tmp_path, s
 
 def test_every_row_brings_what_its_taps_did(whole):
     deliveries = whole[0].deliveries
-    every = STEPS * len(SCENES)
-    faulted = (STEPS - FAULT.onset_step) * len(SCENES)
+    every = ToySystem.steps * len(SCENES)
+    faulted = (ToySystem.steps - FAULT.onset_step) * len(SCENES)
     planner = TapCount("mass", "planner.thrust", every, faulted, faulted)
     struck = TapCount("mass", "observer.balance", every, faulted, faulted)
     spared = TapCount("mass", "observer.balance", every, 0, 0)

@@ -8,6 +8,7 @@ import pytest
 from checked import BROKEN, LOOPS, ROOT, check, failed
 from cli_runs import faultpath
 from gym_toys import functions
+from written import written
 
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.loop import Taps
@@ -247,14 +248,12 @@ def test_the_command_says_it_in_lines_and_as_json():
 
 def test_a_file_that_is_read_undeclared_fails_a_check_of_its_own(tmp_path) -> None:
     (tmp_path / "gain.txt").write_text("1")
-    (tmp_path / "mine.py").write_text(
-        f"import sys\nsys.path.append({str(ROOT / 'examples')!r})\nfrom pathlib import Path\n"
-        "from toy import Toy\nclass Mine(Toy):\n    def run(self, *asked):\n"
-        "        Path(__file__).with_name('gain.txt').read_text()\n"
-        "        return super().run(*asked)\ndef create() -> Mine:\n    return Mine()\n"
+    read = "Path(__file__).with_name('gain.txt').read_text()"
+    system = written(
+        tmp_path, f"def run(self, *asked):\n    {read}\n    return super().run(*asked)"
     )
     os.utime(tmp_path / "gain.txt", (0, 0))
-    found = failed(check(f"{tmp_path}/mine.py:create", library="carts"))
+    found = failed(check(system, library="carts"))
     assert set(found) == {"trials end", "data files"}
     (said,) = found["data files"]
     assert "reads gain.txt, which it does not declare" in said
