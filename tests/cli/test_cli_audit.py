@@ -146,9 +146,3 @@ def test_a_failed_trial_is_shown_and_the_status_says_so():
     effect = open_run("run").record.effects[0]
     assert (effect.void, effect.scenes) == (1, 5)
     assert re.search(r"^Shared fault .* 5 +1 ", ended.out, re.MULTILINE), "scenes, then void pairs"
-
-
-def test_when_every_trial_fails_nothing_is_decided():
-    ended = audit(system=written(Path(), BROKEN), set="where=", out="run", scenes=2)
-    ended.refused("cart/000", "ZeroDivisionError")
-    assert not Path("run/record.json").exists()

@@ -15,10 +15,10 @@ from calls import alive, end_of, until
 from faultpath.run.work.executor import Failed, Lost, Returned, WorkerLost, run_all
 from faultpath.run.work.processes import Processes, local
 
-BOTH = pytest.mark.parametrize("workers", [0, 2])
+BOTH = pytest.mark.parametrize("workers", [0, 1])
 
 
-@BOTH
+@pytest.mark.parametrize("workers", [0, 2])
 def test_every_call_comes_back_with_its_place(workers):
     with local(workers) as executor:
         found = dict(run_all(executor, [partial(calls.double, n) for n in range(20)]))
@@ -128,8 +128,8 @@ import calls
 from functools import partial
 from faultpath.run.work.executor import run_all
 from faultpath.run.work.processes import local
-with local(2) as executor:
-    list(run_all(executor, [partial(calls.hang, Path(sys.argv[2]) / "log")] * 2))
+with local(1) as executor:
+    list(run_all(executor, [partial(calls.hang, Path(sys.argv[2]) / "log")]))
 """
 
 
@@ -137,9 +137,9 @@ with local(2) as executor:
 def test_workers_end_with_their_parent_however_it_ends(how, tmp_path):
     command = [sys.executable, "-c", PARENT, str(Path(__file__).parent), str(tmp_path)]
     with subprocess.Popen(command, stderr=subprocess.DEVNULL, start_new_session=True) as parent:
-        until(lambda: len(list(tmp_path.glob("*.pid"))) == 2)
-        pids = [int(path.stem) for path in tmp_path.glob("*.pid")]
-        assert all(map(alive, pids))
+        until(lambda: list(tmp_path.glob("*.pid")))
+        (pid,) = (int(path.stem) for path in tmp_path.glob("*.pid"))
+        assert alive(pid)
         # Ctrl-C of a terminal reaches parent and workers alike
         (os.killpg if how == signal.SIGINT else os.kill)(parent.pid, how)
-    until(lambda: not any(map(alive, pids)))
+    until(lambda: not alive(pid))
