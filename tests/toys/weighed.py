@@ -24,7 +24,7 @@ READERS = ("planner.thrust", "observer.balance", "limit.ceiling")
 class Weighed(System):
     """Variants read the mass at the first one, two or three `READERS`."""
 
-    control_dt_s, steps, pull, near = 0.05, 12, 0.3, 0.15
+    control_dt_s, steps, pull, near, traced = 0.05, 12, 0.3, 0.15, True
     reads: Mapping[str, int]
     says: Mapping[str, int]
     """By variant, at how many of the readers it reads, and at how many it says that it does."""
@@ -74,7 +74,7 @@ class Weighed(System):
                 initial_hash=f"{start[i]:.12f}",
                 disturbance_hash=f"{scene}-{seed}",
                 planner_noise_hash="none",
-                trace=trace[:, i],
+                trace=trace[:, i] if self.traced else None,
             )
             for i, scene in enumerate(scenes)
         ]
@@ -122,7 +122,8 @@ class ToySystem(Weighed):
 class Golden(Weighed):
     """Depends on scene, seed, variant and fault, and fails where `fails` has VARIANT/SCENE/SEED."""
 
-    name, block_size, trained, steps, pull = "golden", 8, True, 5, 0.5
+    name, block_size, trained, traced = "golden", 8, True, False
+    steps, pull = 5, 0.5
     reads = says = {"once": 1, "twice": 2, "thrice": 3}  # noqa: RUF012 - never changed
 
     def __init__(self, fails: str = "") -> None:
