@@ -216,8 +216,8 @@ def test_a_reader_that_ignores_its_reading_is_remarked_and_not_failed():
 @pytest.mark.parametrize(
     ("broken", "says"),
     [
-        ("undeclared port", "add Port('place', 'other') to its reads."),
-        ("undeclared truth", "the plant's truth 'truth'"),
+        ("undeclared port", "add Port('position', 'other') to its reads."),
+        ("undeclared truth", "the plant's truth 'true_place'"),
     ],
 )
 def test_a_modules_ports_are_what_it_looks_at(broken, says):
