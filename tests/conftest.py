@@ -50,6 +50,12 @@ def fuzz_seed(request: pytest.FixtureRequest) -> int:
 
 
 @pytest.fixture
+def without_pages(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let audits write no page, for tests that look at none: it takes longer than small audits."""
+    monkeypatch.setattr("faultpath.api.runs.write_report", lambda *_: [])
+
+
+@pytest.fixture
 def approved(request: pytest.FixtureRequest) -> Callable[[str, str], None]:
     """Compare a text with the approved one of its name, in a folder beside the test's file.
 

@@ -35,16 +35,19 @@ def halve(size: float) -> tuple[Fault, ...]:
     return tuple(Fault(channel=name, intervention=scale) for name in ("mass", "heat"))
 
 
+READS = {
+    "plain": {"planner.cost", "planner.limit"},
+    "limited": {"planner.limit"},
+    "observed": {"planner.cost", "planner.limit", "observer.model"},
+    "deaf": set(),
+    "logged": {"logger.file"},
+}
+
+
 class Paper(Still):
     name, interface = "paper", read_interface(FACTS)
-    readers = {  # noqa: RUF012 - never changed
-        "plain": {"planner.cost", "planner.limit"},
-        "limited": {"planner.limit"},
-        "observed": {"planner.cost", "planner.limit", "observer.model"},
-        "deaf": set(),
-        "logged": {"logger.file"},
-    }
-    fault_presets = {"both": halve}  # noqa: RUF012 - never changed
+    variants = {name: Variant(name, name, frozenset(reads)) for name, reads in READS.items()}  # noqa: RUF012
+    fault_presets = {"both": halve}  # noqa: RUF012
 
 
 def planned(baseline: str, repair: str, text: str, **changes) -> Audit:

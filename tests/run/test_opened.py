@@ -24,6 +24,9 @@ ASKED = {
 }
 
 
+pytestmark = pytest.mark.usefixtures("without_pages")
+
+
 @pytest.fixture(autouse=True)
 def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
