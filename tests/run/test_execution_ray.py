@@ -9,7 +9,8 @@ from functools import partial
 from pathlib import Path
 
 import pytest
-from calls import alive, end_of, until
+from calls import alive, end_of
+from cli_runs import until
 from ray_nodes import cluster, node
 from toy_study import SYSTEM, UNITS, study, study_of
 from written import written

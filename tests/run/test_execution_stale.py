@@ -18,8 +18,7 @@ PLACES = ("file", "helper", "data")
 
 
 @pytest.fixture
-def mine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Mine:
-    monkeypatch.setattr(sys, "path", list(sys.path))
+def mine(tmp_path: Path) -> Mine:
     return Mine(tmp_path / "mine")
 
 

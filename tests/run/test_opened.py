@@ -1,7 +1,6 @@
 """Files that a system reads and does not declare: an edit would go unnoticed."""
 
 import os
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -24,13 +23,7 @@ ASKED = {
 }
 
 
-pytestmark = pytest.mark.usefixtures("without_pages")
-
-
-@pytest.fixture(autouse=True)
-def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys, "path", list(sys.path))
+pytestmark = pytest.mark.usefixtures("elsewhere", "without_pages")
 
 
 def old(path: Path) -> Path:

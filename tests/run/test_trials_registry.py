@@ -18,7 +18,6 @@ FILE = ROOT / "tests" / "toys" / "weighed.py"
 
 
 def test_a_file_is_enough_and_may_import_the_file_beside_it(tmp_path, monkeypatch):
-    monkeypatch.setattr(sys, "path", list(sys.path))
     (tmp_path / "parts_of_mine.py").write_text(FILE.read_text())
     (tmp_path / "mine.py").write_text("from parts_of_mine import create\n")
     monkeypatch.chdir(tmp_path)

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import calls
 import pytest
-from calls import alive, end_of, until
+from calls import alive, end_of
+from cli_runs import until
 
 from faultpath.run.work.executor import Failed, Lost, Returned, WorkerLost, run_all
 from faultpath.run.work.processes import Processes, local
@@ -95,7 +96,7 @@ def test_a_worker_that_dies_between_two_calls_is_replaced():
         pid = end_of(executor, calls.settings).value[0]
         os.kill(pid, signal.SIGKILL)
         # Its first thread is gone before the others are, and only with them its end can be seen.
-        until(lambda: os.waitid(os.P_PID, pid, os.WEXITED | os.WNOHANG | os.WNOWAIT))
+        until(lambda: os.waitid(os.P_PID, pid, os.WEXITED | os.WNOHANG | os.WNOWAIT), "its end")
         assert end_of(executor, partial(calls.double, 1)) == Returned(2)
 
 
@@ -137,9 +138,9 @@ with local(1) as executor:
 def test_workers_end_with_their_parent_however_it_ends(how, tmp_path):
     command = [sys.executable, "-c", PARENT, str(Path(__file__).parent), str(tmp_path)]
     with subprocess.Popen(command, stderr=subprocess.DEVNULL, start_new_session=True) as parent:
-        until(lambda: list(tmp_path.glob("*.pid")))
+        until(lambda: list(tmp_path.glob("*.pid")), "a worker")
         (pid,) = (int(path.stem) for path in tmp_path.glob("*.pid"))
         assert alive(pid)
         # Ctrl-C of a terminal reaches parent and workers alike
         (os.killpg if how == signal.SIGINT else os.kill)(parent.pid, how)
-    until(lambda: not alive(pid))
+    until(lambda: not alive(pid), "its end")
