@@ -6,6 +6,8 @@ import pytest
 from cli_runs import TOY, audit, faultpath
 from written import written
 
+pytestmark = pytest.mark.usefixtures("without_pages")
+
 QUADROTOR = ("wind", "environment", "clearance", "predictor", "planner", "candidates", "device")
 
 CREATE = """
