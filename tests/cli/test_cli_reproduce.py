@@ -3,7 +3,6 @@
 import json
 import shutil
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -22,7 +21,7 @@ from faultpath.api.job import Job
 from faultpath.core.errors import UserError
 from faultpath.run.work.executor import Here
 
-PLAN = ReproductionPlan((table_4.PAGE,), replace(QUICK, scenes=2))
+PLAN = ReproductionPlan((table_4.PAGE,), QUICK)
 DISPLAY = Display(command=("faultpath", "reproduce"))
 
 
