@@ -25,7 +25,7 @@ ASKED = {**AUDIT, "scenes": 12, "signals": False}
 SEQUENTIAL = {**ASKED, "scenes": 60, "stop_when": "decided"}
 
 
-pytestmark = pytest.mark.usefixtures("elsewhere")
+pytestmark = pytest.mark.usefixtures("elsewhere", "without_pages")
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,8 @@ from cli_runs import audit
 
 
 @pytest.fixture(autouse=True)
-def _elsewhere(elsewhere: None) -> None: ...
+def _elsewhere(elsewhere: None) -> None:
+    """Hold for all of them."""
 
 
 @pytest.fixture(scope="session")
