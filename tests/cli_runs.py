@@ -16,7 +16,6 @@ from faultpath.cli.main import main
 
 ROOT = Path(__file__).resolve().parents[1]
 TOY = f"{ROOT / 'examples' / 'toy.py'}:create"
-SYSTEMS = ROOT / "tests" / "cli" / "systems"
 COMMAND = [sys.executable, "-c", "from faultpath.cli.main import main; main()"]
 
 

@@ -2,9 +2,11 @@
 
 import secrets
 import signal
+import sys
 from collections.abc import Callable, Iterator
 from importlib import import_module
 from importlib.util import find_spec
+from pathlib import Path
 
 import pytest
 from engine_alone import EngineAlone
@@ -13,6 +15,8 @@ from hypothesis import settings
 settings.register_profile("fixed", derandomize=True, database=None, deadline=None)
 settings.register_profile("explore", derandomize=False, max_examples=500, deadline=None)
 settings.load_profile("fixed")
+
+sys.path.insert(0, str(Path(__file__).with_name("toys")))
 
 
 # A shell's background starts its commands deaf to Ctrl-C, and what they start would be deaf too.
@@ -38,11 +42,29 @@ def pytest_configure(config: pytest.Config) -> None:
         import_module("faultpath_quadrotor")  # tells torch what to use, before a test computes
 
 
+@pytest.fixture(autouse=True)
+def _own_path(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Leave no folders of systems to other tests."""
+    monkeypatch.setattr(sys, "path", list(sys.path))
+
+
+@pytest.fixture
+def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Begin in an empty folder."""
+    monkeypatch.chdir(tmp_path)
+
+
 @pytest.fixture
 def fuzz_seed(request: pytest.FixtureRequest) -> int:
     """The seed of what a fuzz test tries; a failing test names it."""
     given = request.config.getoption("--fuzz-seed")
     return secrets.randbelow(10**9) if given == "random" else int(given)
+
+
+@pytest.fixture
+def without_pages(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let audits write no page, for tests that look at none: it takes longer than small audits."""
+    monkeypatch.setattr("faultpath.api.runs.write_report", lambda *_: [])
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from faultpath_quadrotor.scenes.library import FROZEN, Library, as_text, load_library
+from faultpath_quadrotor.scenes.library import FROZEN, SceneLibrary, as_text, load_library
 from generate import generate_scene
 
 FROZEN_SEEDS = {
@@ -17,9 +17,9 @@ FROZEN_SEEDS = {
 """Seed and number of scenes of the libraries of the package."""
 
 
-def draw_library(name: str, seed: int, count: int) -> Library:
+def draw_library(name: str, seed: int, count: int) -> SceneLibrary:
     """Return `count` new scenes; the same name, seed and count give the same scenes."""
-    return Library.of(name, tuple(generate_scene(name, index, seed) for index in range(count)))
+    return SceneLibrary.of(name, tuple(generate_scene(name, index, seed) for index in range(count)))
 
 
 def main() -> None:

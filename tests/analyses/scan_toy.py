@@ -8,14 +8,15 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from still import Still
+
 from faultpath.analyses.scan.analysis import ScanAnalysis, Scanned, scan_analysis
 from faultpath.analyses.scan.model import ScanResult
-from faultpath.interface import Channel, Interface, Provenance, Source, Uncertainty
-from faultpath.loop import Taps
+from faultpath.interface import Interface
 from faultpath.run import Deliveries, Plan, SystemSpec, Trials
 from faultpath.run.question import ScanQuestion, ask
 from faultpath.run.trials import Trial
-from faultpath.system import Library, SceneRef, System, Variant
+from faultpath.system import Variant
 from faultpath.system.outcome import Outcome, Status, failed_outcome
 
 READERS = {
@@ -29,37 +30,29 @@ Cost = Callable[[Mapping[str, float]], float]
 """What errors cost, by reader, such as `one.pair`."""
 
 
-class Planted(System):
-    name, control_dt_s = "planted", 0.1
+class Planted(Still):
+    name, named = "planted", "s{:04d}"
 
-    def __init__(self, cost: Cost, sources: Sequence[str] = ("a", "b"), scenes: int = 400) -> None:
-        self.cost, self.sources, self.scenes = cost, sources, scenes
+    def __init__(
+        self,
+        cost: Cost,
+        sources: Sequence[str] = ("a", "b"),
+        scenes: int = 400,
+        std: float | None = 0.4,
+    ) -> None:
+        self.cost, self.scenes = cost, scenes
         self.failing: set[tuple[str, str]] = set()
         self.unlike: set[tuple[str, str]] = set()
         """Condition and scene of trials that fail, and of those that begin elsewhere."""
-
-    @property
-    def interface(self) -> Interface:
-        unsure = Uncertainty(std=0.4)
-        return Interface(
-            name="planted",
-            sources=tuple(
-                Source(name=n, unit="m", provenance=Provenance.ESTIMATED, uncertainty=unsure)
-                for n in self.sources
-            ),
-            channels=tuple(Channel(name=n, sources=(n,), readers=READERS[n]) for n in self.sources),
-        )
-
-    @property
-    def variants(self) -> Mapping[str, Variant]:
-        readers = frozenset(reader for name in self.sources for reader in READERS[name])
-        return {name: Variant(name, "", readers) for name in ("whole", "deaf")}
-
-    def library(self, name: str) -> Library:
-        return Library(name, tuple(SceneRef(f"s{i:04d}", i) for i in range(self.scenes)), name)
-
-    def run(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> list[Outcome]:
-        raise AssertionError("trials are taken from what the errors cost")
+        unsure = {"uncertainty": std and {"std": std}, "unit": "m", "provenance": "estimated"}
+        facts = {
+            "name": "planted",
+            "sources": [{"name": name, **unsure} for name in sources],
+            "channels": [{"name": n, "sources": [n], "readers": READERS[n]} for n in sources],
+        }
+        self.interface = Interface.model_validate(facts)
+        readers = frozenset(reader for name in sources for reader in READERS[name])
+        self.variants = {name: Variant(name, "", readers) for name in ("whole", "deaf")}
 
 
 def difficulty(scene: str) -> float:

@@ -229,7 +229,7 @@ def reads_well(made: AuditResult) -> None:
         assert sentence.count("(") == sentence.count(")")
 
 
-@pytest.mark.parametrize("n", [1, 2, 4, 40])
+@pytest.mark.parametrize("n", [1, 4, 40])
 @pytest.mark.parametrize("how", RUNS)
 @pytest.mark.parametrize("over", CONDITIONS)
 def test_no_sentence_claims_what_was_not_decided(n: int, how: str, over: str) -> None:
@@ -275,7 +275,7 @@ def says_how_it_stopped(made: AuditResult) -> None:
         assert fixed not in whole
 
 
-@pytest.mark.parametrize("n", [1, 2, 4, 40])
+@pytest.mark.parametrize("n", [1, 4, 40])
 @pytest.mark.parametrize("how", ["one seed", "three seeds", "void", "one condition idle"])
 @pytest.mark.parametrize("over", ["one condition", "shared"])
 def test_no_sentence_of_a_sequential_audit_claims_what_was_not_decided(

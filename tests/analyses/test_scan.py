@@ -218,15 +218,8 @@ def test_a_mistake_is_one_sentence(arguments: dict[str, Any], parts: list[str]):
 
 
 def test_a_system_that_says_no_size_is_asked_for_one():
-    class Unsized(Planted):
-        @property
-        def interface(self):
-            whole = super().interface
-            sources = tuple(s.model_copy(update={"uncertainty": None}) for s in whole.sources)
-            return whole.model_copy(update={"sources": sources})
-
     with pytest.raises(UserError, match=r"a declares no uncertainty.*--fault a:scale=1\.1"):
-        planned(Unsized(lambda at: 0.0))
+        planned(Planted(lambda at: 0.0, std=None))
 
 
 def test_the_page_has_the_numbers_of_the_code():

@@ -1,13 +1,14 @@
 """Which sources may err, by how much, and which of them comes first."""
 
 import pytest
+from still import Still
 
 from faultpath.analyses.scan.ranking import ranked
 from faultpath.analyses.scan.sources import Candidate, candidates
 from faultpath.core.errors import UserError
 from faultpath.faults import Fault, FaultText, Scale
 from faultpath.interface import read_interface
-from faultpath.system import Library, SceneRef, System, Variant
+from faultpath.system import System, Variant
 
 FACTS = """
 name: sized
@@ -48,19 +49,13 @@ def calibration(size: float) -> tuple[Fault, ...]:
 READ = frozenset({"model.mass", "model.rate", "planner.mass", "planner.place"})
 
 
-class Sized(System):
-    name, control_dt_s, interface = "sized", 0.1, read_interface(FACTS)
+class Sized(Still):
+    name, interface, scenes = "sized", read_interface(FACTS), 1
     variants = {  # noqa: RUF012 - never changed
         "all": Variant("all", "", READ),
         "less": Variant("less", "", READ - {"planner.mass"}),
         "told": Variant("told", "", READ, {"place": "truth"}, frozenset({"truth"})),
     }
-
-    def library(self, name):
-        return Library(name, (SceneRef("s", 0),), f"{name}-1")
-
-    def run(self, variant, scenes, taps, seed):
-        raise AssertionError("nothing flies")
 
 
 class Preset(Sized):

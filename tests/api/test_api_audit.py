@@ -26,9 +26,7 @@ ASKED = {**AUDIT, "scenes": 12, "signals": False}
 SEQUENTIAL = {**ASKED, "scenes": 60, "stop_when": "decided"}
 
 
-@pytest.fixture(autouse=True)
-def _elsewhere(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+pytestmark = pytest.mark.usefixtures("elsewhere", "without_pages")
 
 
 @pytest.fixture(scope="module")

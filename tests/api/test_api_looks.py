@@ -12,9 +12,7 @@ AUDIT_MODULE = import_module("faultpath.api.audit")
 FIVE_PERCENT = "at most 5 % of audits would report any difference"
 
 
-@pytest.fixture(autouse=True)
-def _elsewhere(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+pytestmark = pytest.mark.usefixtures("elsewhere", "without_pages")
 
 
 def audited(**asked) -> faultpath.Run:

@@ -6,6 +6,7 @@ from importlib import import_module
 import numpy as np
 import pytest
 from toy_audits import AUDIT, FILE
+from written import written
 
 import faultpath
 from faultpath.api.folders import read_run
@@ -77,19 +78,12 @@ def test_a_system_that_does_not_fly_again_is_a_finding(tmp_path, second) -> None
         "ends": "import sys; sys.exit(3)",
         "differs": "outcomes = [replace(o, time_s=o.time_s / 2) for o in outcomes]",
     }[second]
-    system = tmp_path / "odd.py"
-    system.write_text(
-        f"import sys; sys.path.insert(0, {str(FILE.parent)!r})\n"
-        "from dataclasses import replace\n"
-        "import toy\n"
-        "class Odd(toy.Toy):\n"
-        "    def run(self, variant, scenes, taps, seed):\n"
-        "        outcomes = super().run(variant, scenes, taps, seed)\n"
-        "        if taps._observer is not None:\n"
-        f"            {what}\n"
-        "        return outcomes\n"
-        "create = Odd\n",
-        "utf-8",
+    system = written(
+        tmp_path,
+        "def run(self, variant, scenes, taps, seed):\n"
+        "    outcomes = super().run(variant, scenes, taps, seed)\n"
+        f"    if taps._observer is not None:\n        {what}\n"
+        "    return outcomes",
     )
     run = faultpath.audit(system, **ASKED, folder=tmp_path / "run")
     assert not (run.folder / SIGNALS).exists()

@@ -48,6 +48,7 @@ def test_lists_that_are_none(text, said):
         FaultText.read(text)
 
 
+@pytest.mark.usefixtures("without_pages")
 def test_each_size_is_an_audit_as_if_alone(tmp_path):
     _, strong = faultpath.api.audits(TOY, fault="gain:scale=0.6,0.8", folder=tmp_path, **ASKED)
     alone = faultpath.audit(TOY, fault="gain:scale=0.8", folder=tmp_path / "alone", **ASKED)

@@ -1,11 +1,12 @@
 """Which treatments a question needs, and which of them are one and the same."""
 
 import pytest
+from still import Still
 
 from faultpath.analyses.audit import AuditAnalysis, audit_analysis
 from faultpath.core.errors import UserError
 from faultpath.faults import Fault, FaultText, Scale
-from faultpath.interface import Channel, Interface, Provenance, Source, read_interface
+from faultpath.interface import read_interface
 from faultpath.run import SystemSpec
 from faultpath.run.question import (
     AuditQuestion,
@@ -14,23 +15,26 @@ from faultpath.run.question import (
     ScanQuestion,
     TraceQuestion,
 )
-from faultpath.system import Library, SceneRef, Status, System, Variant
+from faultpath.system import Status, Variant
 
-INTERFACE = Interface(
-    name="paper",
-    sources=(
-        Source(name="scale_reading", unit="kg", provenance=Provenance.MEASURED),
-        Source(name="thermometer", unit="K", provenance=Provenance.MEASURED),
-    ),
-    channels=(
-        Channel(
-            name="mass",
-            sources=("scale_reading",),
-            readers=("planner.cost", "planner.limit", "observer.model", "logger.file"),
-        ),
-        Channel(name="heat", sources=("thermometer",), readers=("logger.file",)),
-    ),
-)
+FACTS = """
+name: paper
+sources:
+- {name: scale_reading, unit: kg, provenance: measured}
+- {name: thermometer, unit: K, provenance: measured}
+channels:
+- name: mass
+  sources: [scale_reading]
+  readers: [planner.cost, planner.limit, observer.model, logger.file]
+- {name: heat, sources: [thermometer], readers: [logger.file]}
+"""
+
+
+def halve(size: float) -> tuple[Fault, ...]:
+    scale = Scale(factor=size)
+    return tuple(Fault(channel=name, intervention=scale) for name in ("mass", "heat"))
+
+
 READS = {
     "plain": {"planner.cost", "planner.limit"},
     "limited": {"planner.limit"},
@@ -40,26 +44,10 @@ READS = {
 }
 
 
-def halve(size: float) -> tuple[Fault, ...]:
-    scale = Scale(factor=size)
-    return tuple(Fault(channel=name, intervention=scale) for name in ("mass", "heat"))
-
-
-class Paper(System):
-    """Lays out variants and never runs."""
-
-    name, control_dt_s, interface = "paper", 0.1, INTERFACE
+class Paper(Still):
+    name, interface = "paper", read_interface(FACTS)
     variants = {name: Variant(name, name, frozenset(reads)) for name, reads in READS.items()}  # noqa: RUF012
     fault_presets = {"both": halve}  # noqa: RUF012
-
-    def library(self, name: str) -> Library:
-        return Library(name, tuple(SceneRef(f"s{i}", i) for i in range(5)), f"{name}-1")
-
-    def fingerprint(self) -> str:
-        return "paper-1"
-
-    def run(self, variant, scenes, taps, seed):
-        raise AssertionError("planning runs nothing")
 
 
 def planned(baseline: str, repair: str, text: str, **changes) -> AuditAnalysis:
@@ -174,7 +162,7 @@ def test_scenes_that_the_library_does_not_have(count):
 
 
 def test_a_module_may_not_be_called_like_a_condition(monkeypatch):
-    document = INTERFACE.model_dump_json(indent=1).replace("observer.model", "shared.model")
+    document = FACTS.replace("observer.model", "shared.model")
     monkeypatch.setattr(Paper, "interface", read_interface(document))
     reads = frozenset({"planner.cost", "shared.model"})
     monkeypatch.setitem(Paper.variants, "observed", Variant("observed", "", reads))

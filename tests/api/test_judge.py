@@ -80,6 +80,7 @@ KINDS: dict[str, tuple[Callable[[Path, str, Any], str], str, dict[str, Any]]] = 
 }
 
 
+@pytest.mark.usefixtures("without_pages")
 @pytest.mark.parametrize(("write", "pairing", "more"), KINDS.values(), ids=KINDS)
 def test_what_other_tools_write_is_read(
     write: Callable[[Path, str, Any], str], pairing: str, more: dict[str, Any], tmp_path: Path
@@ -148,6 +149,7 @@ def test_a_task_with_all_of_its_scenes_is_one_of_few(tmp_path: Path) -> None:
     assert any("--cluster task" in said for said in by_scene.words.findings)
 
 
+@pytest.mark.usefixtures("without_pages")
 @pytest.mark.parametrize("n", [1, 2, 4])
 @pytest.mark.parametrize("won", [(True, False), (True, True)])
 def test_few_scenes_and_ties_claim_nothing(n: int, won: tuple[bool, bool], tmp_path: Path) -> None:

@@ -1,6 +1,5 @@
-"""Every test of the command line begins in an empty folder, and leaves `sys.path` as it was."""
+"""Every test of the command line begins in an empty folder."""
 
-import sys
 from pathlib import Path
 
 import pytest
@@ -8,9 +7,8 @@ from cli_runs import audit
 
 
 @pytest.fixture(autouse=True)
-def _elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys, "path", list(sys.path))
+def _elsewhere(elsewhere: None) -> None:
+    """Hold for all of them."""
 
 
 @pytest.fixture(scope="session")

@@ -156,10 +156,7 @@ def test_without_trials_the_sources_are_ranked_and_nothing_is_written(tmp_path: 
         ("map", {"spread": "wide"}, ("--spread", "'wide'")),
         ("map", {"mean": "0.1,x"}, ("--mean", "'0.1,x'")),
         ("map", {"against": "controller,,observer"}, ("--against", "empty name")),
-        ("scan", {"fault": "gain:scale"}, ("gain:scale", "needs one size")),
         ("scan", {"scenes": "many"}, ("--scenes", "'many'")),
-        ("scan", {"scenes": 51}, ("51 scenes of 'carts' are too few",)),
-        ("scan", {"variant": "calibratd"}, ("did you mean 'calibrated'",)),
     ],
 )
 def test_a_mistake_is_one_sentence_and_leaves_nothing(

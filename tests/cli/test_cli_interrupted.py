@@ -9,16 +9,27 @@ import sys
 from pathlib import Path
 
 import pytest
-from cli_runs import SYSTEMS, audit, audit_line, faultpath, shards, start, until
+from cli_runs import audit, audit_line, faultpath, shards, start, until
+from written import written
 
 from faultpath.cli.main import INTERRUPTED
 
+pytestmark = pytest.mark.usefixtures("without_pages")
 SCENES, BLOCKS = 8, 24
+SLOW = """block_size = 2
+def __init__(self, gate):
+    self.gate = Path(gate)
+def run(self, *asked):
+    import time
+    if self.gate.exists():
+        time.sleep(0.3)
+    return super().run(*asked)"""
 
 
 @pytest.fixture(scope="module")
 def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     place = tmp_path_factory.mktemp("undisturbed")
+    written(place, SLOW)
     options = _options(place / "no gate", place / "run") | {"workers": 0}
     assert audit(**options).status == 0
     return (place / "run" / "outcomes.parquet").read_bytes()
@@ -27,13 +38,14 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> bytes:
 @pytest.fixture
 def gate(tmp_path: Path) -> Path:
     """A file that slows the toy down while it exists."""
+    written(tmp_path, SLOW)
     place = tmp_path / "gate"
     place.touch()
     return place
 
 
 def _options(gate: Path, out: Path) -> dict[str, object]:
-    system = f"{SYSTEMS / 'slow_toy.py'}:create"
+    system = f"{gate.parent / 'mine.py'}:create"
     return {"system": system, "set": f"gate={gate}", "out": out, "scenes": SCENES}
 
 

@@ -7,15 +7,8 @@ from pathlib import Path
 from textwrap import dedent
 
 import pytest
-from cli_runs import COMMAND, ROOT, audit, faultpath
-
-HEAD = f"""
-import sys
-sys.path.insert(0, {str(ROOT / "examples")!r})
-from faultpath.system import Library, SceneRef, System, Variant
-from toy import Toy
-INTERFACE = Toy.interface
-"""
+from cli_runs import COMMAND, audit, faultpath
+from written import HEAD
 
 BROKEN = {
     "syntax": ("def create(:", "SyntaxError"),
@@ -56,7 +49,7 @@ FLOWN = {
 def _system(tmp_path: Path, code: str) -> tuple[str, str]:
     """Write a system and return its name, and the place that is marked `here`."""
     path = tmp_path / "mine.py"
-    path.write_text(HEAD + code + "\n")
+    path.write_text(f"{HEAD}from toy import Toy\n{code}\n")
     lines = path.read_text().splitlines()
     here = next((n for n, line in enumerate(lines, 1) if line.endswith("# here")), 0)
     return f"{path}:create", f"mine.py, line {here}:" if here else ""

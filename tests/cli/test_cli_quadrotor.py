@@ -10,7 +10,7 @@ import pytest
 from cli_runs import ROOT, Ended, audit, faultpath
 from faultpath_quadrotor import native
 from faultpath_quadrotor.plant import module
-from faultpath_quadrotor.scenes.library import Library, as_text, load_library
+from faultpath_quadrotor.scenes.library import SceneLibrary, as_text, load_library
 
 from faultpath.api.runs import open_run
 from faultpath.core.errors import Notice
@@ -30,7 +30,7 @@ def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         scene.model_copy(update={"library": "mine", "id": f"mine/{scene.index:03d}"})
         for scene in load_library("selection").scenes[:2]
     )
-    (tmp_path / "mine.json").write_text(as_text(Library.of("mine", scenes)))
+    (tmp_path / "mine.json").write_text(as_text(SceneLibrary.of("mine", scenes)))
 
 
 def _audit(baseline: str, repair: str, **options: object) -> Ended:

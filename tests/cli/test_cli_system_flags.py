@@ -3,29 +3,25 @@
 import json
 
 import pytest
-from cli_runs import ROOT, TOY, audit, faultpath
+from cli_runs import TOY, audit, faultpath
+from written import written
+
+pytestmark = pytest.mark.usefixtures("without_pages")
 
 QUADROTOR = ("wind", "environment", "clearance", "predictor", "planner", "candidates", "device")
 
-MINE = f"""
-import sys
+CREATE = """
 from typing import Annotated, Literal
-sys.path.append({str(ROOT / "examples")!r})
-import toy
-
-def create(
-    gear: Annotated[Literal["low", "high"], "Gear of the cart."] = "low",
-    steps: int = 3,
-    scenes: str = "",
-) -> "System":
+Gear = Annotated[Literal["low", "high"], "Gear of the cart."]
+def create(gear: Gear = "low", steps: int = 3, scenes: str = "") -> Mine:
     assert isinstance(steps, int)
-    return toy.create()
+    return Mine()
 """
 
 
 @pytest.fixture(autouse=True)
 def _mine(tmp_path):
-    (tmp_path / "mine.py").write_text(MINE)
+    written(tmp_path, create=CREATE)
 
 
 @pytest.mark.parametrize(

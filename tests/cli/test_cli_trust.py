@@ -7,23 +7,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from cli_runs import ROOT, audit, edit, faultpath
+from cli_runs import audit, edit, faultpath
 from odd_inputs import sign
+from written import CREATE, written
 
 from faultpath.api.systems import check_named
 from faultpath.core.errors import UserError
 from faultpath.run import SystemSpec
-
-MINE = f"""
-import sys
-sys.path.append({str(ROOT / "examples")!r})
-from pathlib import Path
-from toy import Toy
-Path("imported").touch()
-
-def create() -> Toy:
-    return Toy()
-"""
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +23,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with pytest.MonkeyPatch.context() as patched:
         patched.chdir(place)
         patched.setattr(sys, "path", list(sys.path))
-        (place / "mine.py").write_text(MINE)
+        written(place, create=f'Path("imported").touch()\n{CREATE}')
         assert audit(system="mine.py:create", out="run", scenes=2).status == 0
         (place / "imported").unlink()
     return place
@@ -87,7 +77,8 @@ def test_a_file_is_imported_where_a_person_names_it_too_or_trusts_all() -> None:
 
 
 def test_that_the_code_is_another_is_said_where_trials_differ() -> None:
-    Path("mine.py").write_text(f"{MINE}\nToy.control_dt_s = 2 * Toy.control_dt_s\n")
+    with Path("mine.py").open("a") as file:
+        file.write("Toy.control_dt_s = 2 * Toy.control_dt_s\n")
     ended = faultpath("replay", "run", "--code", "mine.py")
     assert ended.status == 1, ended.err
     assert "mine.py" in ended.out.rpartition("have changed: ")[2]

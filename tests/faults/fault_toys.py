@@ -2,47 +2,27 @@
 
 from faultpath.core.errors import UserError
 from faultpath.faults import Fault, Scale
-from faultpath.interface import Channel, Interface, Provenance, Source
+from faultpath.interface import read_interface
 
-INTERFACE = Interface(
-    name="toy",
-    sources=(
-        Source(
-            name="mass_estimate",
-            unit="kg",
-            provenance=Provenance.ESTIMATED,
-            correlation_group="calibration",
-        ),
-        Source(
-            name="thrust_estimate",
-            unit="1",
-            provenance=Provenance.ESTIMATED,
-            correlation_group="calibration",
-        ),
-        Source(name="spare", unit="1", provenance=Provenance.MEASURED),
-        Source(name="seen_wind", unit="m/s", shape=(3,), provenance=Provenance.RECONSTRUCTED),
-    ),
-    channels=(
-        Channel(
-            name="mass",
-            sources=("mass_estimate",),
-            readers=("predictor.dynamics", "predictor.trim", "observer.wind_map"),
-            erasure_default=1.0,
-        ),
-        Channel(
-            name="thrust",
-            sources=("thrust_estimate",),
-            readers=("predictor.dynamics", "observer.model"),
-        ),
-        Channel(
-            name="wind",
-            sources=("seen_wind",),
-            readers=("predictor.wind_map",),
-            erasure_default=(0.0, 0.0, 1.0),
-        ),
-    ),
-    reconstructs={"observer": "seen_wind"},
-)
+INTERFACE = read_interface("""
+name: toy
+sources:
+- {name: mass_estimate, unit: kg, provenance: estimated, correlation_group: calibration}
+- {name: thrust_estimate, unit: '1', provenance: estimated, correlation_group: calibration}
+- {name: spare, unit: '1', provenance: measured}
+- {name: seen_wind, unit: m/s, shape: [3], provenance: reconstructed}
+channels:
+- name: mass
+  sources: [mass_estimate]
+  readers: [predictor.dynamics, predictor.trim, observer.wind_map]
+  erasure_default: 1.0
+- {name: thrust, sources: [thrust_estimate], readers: [predictor.dynamics, observer.model]}
+- name: wind
+  sources: [seen_wind]
+  readers: [predictor.wind_map]
+  erasure_default: [0.0, 0.0, 1.0]
+reconstructs: {observer: seen_wind}
+""")
 
 
 def calibration(error: float) -> tuple[Fault, ...]:

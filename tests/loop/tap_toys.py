@@ -8,33 +8,27 @@ import numpy as np
 from faultpath import faults as kinds
 from faultpath.core.streams import generator
 from faultpath.faults import Fault, resolve
-from faultpath.interface import Channel, Interface, Provenance, Source
+from faultpath.interface import read_interface
 from faultpath.loop import Reading, Taps
 
 DT_S = 0.05
 SHAPES = {"mass": (), "wind": (3,)}
-INTERFACE = Interface(
-    name="toy",
-    sources=(
-        Source(name="scale", unit="kg", provenance=Provenance.ESTIMATED),
-        Source(name="still", unit="m/s", shape=(3,), provenance=Provenance.CONSTANT),
-        Source(name="truth", unit="m/s", shape=(3,), provenance=Provenance.PRIVILEGED),
-    ),
-    channels=(
-        Channel(
-            name="mass",
-            sources=("scale",),
-            readers=("predictor.dynamics", "observer.model"),
-            erasure_default=1.0,
-        ),
-        Channel(
-            name="wind",
-            sources=("still", "truth"),
-            readers=("predictor.wind", "planner.wind"),
-            erasure_default=(0.0, 0.0, 1.0),
-        ),
-    ),
-)
+INTERFACE = read_interface("""
+name: toy
+sources:
+- {name: scale, unit: kg, provenance: estimated}
+- {name: still, unit: m/s, shape: [3], provenance: constant}
+- {name: truth, unit: m/s, shape: [3], provenance: privileged}
+channels:
+- name: mass
+  sources: [scale]
+  readers: [predictor.dynamics, observer.model]
+  erasure_default: 1.0
+- name: wind
+  sources: [still, truth]
+  readers: [predictor.wind, planner.wind]
+  erasure_default: [0.0, 0.0, 1.0]
+""")
 SOURCES = {"mass": "scale", "wind": "still"}
 
 INTERVENTIONS: tuple[kinds.Intervention, ...] = (

@@ -1,14 +1,17 @@
 """One loop: order, the past, time, queries, and what ran."""
 
+import contextlib
+
 import numpy as np
 import pytest
-from loop_toys import FACTS, SCENES, Guess, Line, Planner, execute, interface_of, wired
+from line import FACTS, Guess, Line, Planner
 
 from faultpath.core.errors import SystemMistake
 from faultpath.faults import parse_fault, resolve
-from faultpath.interface import transitive_readers
+from faultpath.interface import Interface, transitive_readers
 from faultpath.loop import (
     Batch,
+    Graph,
     IllegalRead,
     Loop,
     MalformedReading,
@@ -19,7 +22,30 @@ from faultpath.loop import (
     readers,
 )
 from faultpath.loop import interface_of as derived
-from faultpath.run.check.reads import ReadLog
+from faultpath.run.check.reads import Enough, ReadLog
+
+DT_S = 0.1
+SCENES = ("a", "b")
+
+
+def interface_of(parts, place=""):
+    return derived(FACTS % place, parts)
+
+
+def execute(modules, faults=(), place="", trace=None, guard=False, plant=None):
+    """Return the instants and the taps of one execution."""
+    interface, parts = wired(modules, place, plant)
+    asked = {"scenes": SCENES, "dt_s": DT_S, "privileged": ("field",), "guard": guard}
+    taps = Taps(interface, resolve(faults, interface), **asked, observer=trace)
+    with contextlib.suppress(Enough):
+        return list(Loop(interface, parts).execute(Batch(SCENES, 0, DT_S), taps)), taps
+    return [], taps
+
+
+def wired(modules, place="", plant=None) -> tuple[Interface, Graph]:
+    plant = plant or Line()
+    interface = interface_of((*modules, plant), place)
+    return interface, graph(interface, plant, modules)
 
 
 def fault(text):

@@ -138,7 +138,6 @@ def test_a_repair_that_does_not_lose_passes_and_sizes_have_one_page(tmp_path: Pa
 MISTAKES = {
     "no system": ({"system": ""}, "the input 'system' is empty"),
     "no variant": ({"baseline": "100 %"}, "toy: unknown variant '100 %'; known: blind, calibrated"),
-    "no argument": ({"arguments": "--wind=L3"}, "there is no option --wind"),
     "odd folder": ({"folder": "a b"}, "the input 'folder' takes letters"),
 }
 

@@ -12,6 +12,7 @@ import pytest
 
 import faultpath
 from faultpath.analyses.facts import ComparisonFacts
+from faultpath.analyses.model import AuditResult
 from faultpath.faults import Fault, FaultText, Intervention, resolve
 from faultpath.run.question import AuditCall, AuditQuestion
 
@@ -29,7 +30,7 @@ READ, RESOLVED = FaultText.read.__func__.__code__, resolve.__code__  # pyright: 
 class Profile:
     """Classes of instances that carry something, and calls of functions."""
 
-    def __init__(self, carries: Callable[[Any], bool], rooms: tuple[str, ...]) -> None:
+    def __init__(self, carries: Callable[[Any], bool], rooms: tuple[str, ...] = ("",)) -> None:
         self.carries, self.rooms = carries, tuple(f"{SOURCE}/{room}" for room in rooms)
         self.classes: set[type] = set()
         self.calls = Counter[object]()
@@ -89,11 +90,14 @@ def is_question(value: Any) -> bool:
     return (names.get("baseline"), names.get("repair")) == ("calibrated", "blind")
 
 
-def profiled(carries: Callable[[Any], bool], folder: Path, *rooms: str, **question: Any) -> Profile:
-    """Run the toy's audit with its report, and return the profile of functions of these rooms, by
-    default of all."""
-    profile = Profile(carries, rooms or ("",))
-    sys.setprofile(profile)
+def audited(folder: Path, *profiles: Profile, **question: Any) -> AuditResult:
+    """Run the toy's audits with their reports in these profiles, and return the last result."""
+
+    def observe(*event: Any) -> None:
+        for profile in profiles:
+            profile(*event)
+
+    sys.setprofile(observe if profiles else None)
     try:
         runs = faultpath.api.audits(
             f"{ROOT / 'examples' / 'toy.py'}:create",
@@ -110,7 +114,7 @@ def profiled(carries: Callable[[Any], bool], folder: Path, *rooms: str, **questi
             run.report()
     finally:
         sys.setprofile(None)
-    return profile
+    return runs[-1].record
 
 
 @pytest.mark.parametrize(
@@ -123,7 +127,8 @@ def profiled(carries: Callable[[Any], bool], folder: Path, *rooms: str, **questi
 def test_a_fault_s_text_is_read_once_resolved_once_and_passes_five_classes(
     fault: str, resolved: int, interventions: int, tmp_path: Path
 ) -> None:
-    profile = profiled(carries_fault, tmp_path, fault=fault, scenes=2)
+    profile = Profile(carries_fault)
+    audited(tmp_path, profile, fault=fault, scenes=2)
     assert profile.calls[READ] == 1
     assert profile.calls[RESOLVED] == resolved  # a size, or a part, each
     kinds = {kind for kind in profile.classes if issubclass(kind, Intervention)}
@@ -135,26 +140,18 @@ def test_a_fault_s_text_is_read_once_resolved_once_and_passes_five_classes(
 def test_an_effect_passes_eight_classes_and_a_question_four(tmp_path: Path) -> None:
     """From the outcomes to the page, those included that hold what holds it."""
     asked: dict[str, Any] = {"fault": "gain:scale=0.6", "scenes": SCENES}
-    run = faultpath.audit(
-        f"{ROOT / 'examples' / 'toy.py'}:create",
-        baseline="calibrated",
-        repair="blind",
-        library="carts",
-        workers=0,
-        progress=False,
-        folder=tmp_path / "first",
-        **asked,
-    )
-    (value,) = (effect.value for effect in run.record.effects if effect.condition == "observer")
+    record = audited(tmp_path / "first", **asked)
+    (value,) = (effect.value for effect in record.effects if effect.condition == "observer")
     rooms = ("stats", "analyses", "report", "api", "cli")
-    effect = profiled(lambda part: value in numbers(part), tmp_path / "effect", *rooms, **asked)
-    assert {"Contrast", "Effect", "AuditResult"} <= {kind.__name__ for kind in effect.classes}
-    assert len(effect.classes) <= 8, effect.classes
+    effect = Profile(lambda part: value in numbers(part), rooms)
 
     def question(holder: Any) -> bool:
         return any(is_question(part) for part in (holder, *fields(holder)))
 
-    questions = profiled(question, tmp_path / "question", *rooms, **asked)
+    questions = Profile(question, rooms)
+    audited(tmp_path / "second", effect, questions, **asked)
+    assert {"Contrast", "Effect", "AuditResult"} <= {kind.__name__ for kind in effect.classes}
+    assert len(effect.classes) <= 8, effect.classes
     assert {AuditCall, AuditQuestion} <= questions.classes
     assert len(questions.classes) <= 4, questions.classes
 

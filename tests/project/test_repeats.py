@@ -20,13 +20,13 @@ def thinned(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(repeats, "sample", lambda *given: whole(*given)[::4])
 
 
-@pytest.mark.parametrize("name", [name for name in HERE if name in {*OWN, "quadrotor-L3"}])
+@pytest.mark.parametrize("name", [name for name in HERE if name in OWN])
 def test_a_sample_of_a_run_comes_out_as_its_page_says(name: str) -> None:
     run = load(name)
     assert repeats.repeat(run) == run.repeats
 
 
-@pytest.mark.parametrize("name", [n for n in HERE if "quadrotor" in n and n != "quadrotor-L3"])
+@pytest.mark.parametrize("name", [n for n in HERE if "quadrotor" in n])
 def test_other_flights_come_out_as_their_page_says(name: str, thinned: None) -> None:
     run = load(name)
     result = repeats.repeat(run)

@@ -13,11 +13,13 @@ notes are about the past and are left alone.
 
 import doctest
 import re
+import shlex
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from subprocess import CompletedProcess
 
 import pytest
+from cli_runs import faultpath
 
 Run = Callable[..., CompletedProcess[str]]
 
@@ -64,12 +66,18 @@ def commands(text: str) -> list[tuple[str, str]]:
     return [(line, output) for line, output in session(text) if RUNNABLE.match(line)]
 
 
-def initialise(line: str, workspace: Path, run: Run) -> CompletedProcess[str]:
-    """Carry out a `faultpath init` command, whether or not another test has done so."""
-    (name,) = INIT.findall(line)
-    for file in (f"{name}.py", f"test_{name}.py"):
-        (workspace / file).unlink(missing_ok=True)
-    return run(line, shell=True)
+def typed(line: str, run: Run) -> CompletedProcess[str]:
+    """Carry out a command: one of faultpath alone in this process, which has loaded what it needs.
+
+    A `faultpath init` writes its files whether or not another test has done so.
+    """
+    for name in INIT.findall(line):
+        for file in (f"{name}.py", f"test_{name}.py"):
+            Path(file).unlink(missing_ok=True)
+    if not line.startswith("faultpath ") or set(line) & set("|&;<>$`*"):
+        return run(line, shell=True)
+    ended = faultpath(*shlex.split(line)[1:])
+    return CompletedProcess(line, ended.status, ended.out, ended.err)
 
 
 @pytest.fixture(scope="session")
@@ -78,6 +86,13 @@ def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("documents")
     (place / "examples").symlink_to(ROOT / "examples")
     return place
+
+
+@pytest.fixture(autouse=True)
+def _here(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(workspace)
+    for name, value in {"COLUMNS": "100", "NO_COLOR": "1", "TERM": "dumb"}.items():
+        monkeypatch.setenv(name, value)
 
 
 TEXTS = {path: path.read_text(encoding="utf-8") for path in DOCUMENTS}
@@ -89,7 +104,7 @@ TEXTS = {path: path.read_text(encoding="utf-8") for path in DOCUMENTS}
 def test_python_of_a_document_runs(document: Path, workspace: Path, run: Run) -> None:
     for line, _ in session(TEXTS[document]):
         if INIT.match(line):
-            initialise(line, workspace, run)
+            typed(line, run)
     script = workspace / f"{document.stem}_snippets.py"
     script.write_text(program(TEXTS[document]), encoding="utf-8")
     done = run(str(script))
@@ -99,12 +114,12 @@ def test_python_of_a_document_runs(document: Path, workspace: Path, run: Run) ->
 @pytest.mark.parametrize(
     "document", [path for path in TEXTS if commands(TEXTS[path])], ids=lambda path: path.name
 )
-def test_console_of_a_document_runs(document: Path, workspace: Path, run: Run) -> None:
+def test_console_of_a_document_runs(document: Path, run: Run) -> None:
     checker = doctest.OutputChecker()
     for line, output in commands(TEXTS[document]):
         brief = OF_ALL_SCENES.match(line) and not output.strip()
         line += " --scenes 8" * bool(brief)
-        done = initialise(line, workspace, run) if INIT.match(line) else run(line, shell=True)
+        done = typed(line, run)
         assert done.returncode == 0, f"$ {line}\n{done.stdout}{done.stderr}"
         if output.strip():
             shown = checker.check_output(output, done.stdout, LOOSELY)

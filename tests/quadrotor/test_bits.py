@@ -26,14 +26,9 @@ SETTINGS = {
         "MKL_NUM_THREADS": "2",
         "OPENBLAS_NUM_THREADS": "2",
     },
-    "AVX-512 hidden": {
+    "AVX-512 hidden, old code in the libraries": {
         "FAULTPATH_KERNELS": "avx2",
         "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX512F,-AVX512VL,-AVX512DQ,-AVX512BW,-AVX512CD",
-        "NPY_DISABLE_CPU_FEATURES": "X86_V4 AVX512_ICL AVX512_SPR",
-        "OPENBLAS_CORETYPE": "Haswell",
-        "MKL_ENABLE_INSTRUCTIONS": "AVX2",
-    },
-    "old code in the libraries": {
         "NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4 AVX512_ICL AVX512_SPR",
         "OPENBLAS_CORETYPE": "Nehalem",
         "MKL_ENABLE_INSTRUCTIONS": "SSE4_2",

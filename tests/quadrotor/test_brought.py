@@ -2,7 +2,6 @@
 
 import os
 import re
-import sys
 from pathlib import Path
 from textwrap import dedent
 
@@ -23,11 +22,6 @@ PREDICTOR, EXACT, WIND, PLANNER, BLIND = (
 )
 STEPS = 6
 pytestmark = pytest.mark.usefixtures("short")
-
-
-@pytest.fixture(autouse=True)
-def _path(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sys, "path", list(sys.path))
 
 
 def test_what_a_user_brings_stands_beside_what_ships():

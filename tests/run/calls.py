@@ -19,13 +19,6 @@ def alive(pid: int) -> bool:
         return False
 
 
-def until(condition, what="", seconds=60.0):
-    limit = time.monotonic() + seconds
-    while not condition():
-        assert time.monotonic() < limit, f"waited in vain for {what}"
-        time.sleep(0.02)
-
-
 def end_of(executor, call, told=lambda message: None, seconds=120.0):
     """Run one call and return its end."""
     (worker, *_) = executor.free()

@@ -2,7 +2,6 @@
 
 import hashlib
 import subprocess
-import sys
 from datetime import UTC, datetime
 
 from stale_toys import Mine
@@ -36,8 +35,7 @@ def test_a_checkout_knows_its_commit_and_its_changes(tmp_path):
     assert checkout(main, [package]) == (commit, True)
 
 
-def test_provenance_tells_the_run_its_repository_and_every_file_that_flew(tmp_path, monkeypatch):
-    monkeypatch.setattr(sys, "path", list(sys.path))
+def test_provenance_tells_the_run_its_repository_and_every_file_that_flew(tmp_path):
     mine = Mine(tmp_path / "mine")
 
     def told(name: str):

@@ -9,9 +9,11 @@ from functools import partial
 from pathlib import Path
 
 import pytest
-from calls import alive, end_of, until
+from calls import alive, end_of
+from cli_runs import until
 from ray_nodes import cluster, node
 from toy_plan import SYSTEM, UNITS, plan, plan_of
+from written import written
 
 import faultpath
 from faultpath.core.errors import Notice, Stopped, UserError
@@ -25,16 +27,11 @@ from faultpath.run.work.ray_cluster import RayWorkers
 UNRULY = Path(__file__).with_name("test_execution_failures.py")
 OTHER = """
 import os
-from toy_system import ToySystem
-
-class Other(ToySystem):
-    def fingerprint(self):
-        return os.environ.get("PLACE", "there")
-
-def create(**options) -> Other:
+Mine.fingerprint = lambda self: os.environ.get("PLACE", "there")
+def create(**options) -> Mine:
     if options.get("needs") not in os.environ:
         raise OSError(f"{options['needs']} is not set")
-    return Other()
+    return Mine()
 """
 pytestmark = pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::FutureWarning")
 
@@ -105,35 +102,10 @@ def test_workers_that_ray_stops_for_want_of_memory_are_waited_for(head, monkeypa
                 hands.free()
 
 
-def test_an_actor_is_a_worker_like_any_other(head):
-    with RayWorkers(head.address, 1) as hands:
-        heard = []
-        assert end_of(hands, partial(send_message, "news"), heard.append) == Returned(None)
-        assert heard == ["news"]
-        first = end_of(hands, os.getpid)
-        assert end_of(hands, os.getpid) == first, "a number stands for a memory that stays"
-        assert end_of(hands, partial(os.getenv, "OMP_NUM_THREADS")) == Returned("1")
-        assert end_of(hands, os.getcwd) == Returned(os.getcwd())
-        assert end_of(hands, elsewhere).value.startswith("node ")
-        failed = end_of(hands, partial(int, "none"))
-        assert isinstance(failed, Failed)
-        assert "Traceback" in failed.error.__notes__[0]
-        lost = end_of(hands, partial(os._exit, 3))
-        assert isinstance(lost, Lost)
-        assert lost.how.startswith("the worker on node ")
-        second = end_of(hands, os.getpid)
-        assert second != first
-        hands.submit(0, partial(time.sleep, 600))
-        assert list(hands.free()) == []
-        hands.cancel(0)
-        assert end_of(hands, os.getpid) not in (first, second)
-    assert elsewhere() == ""
-
-
 def test_an_audit_that_was_stopped_on_a_cluster_goes_on_there_to_the_same_bytes(
     head, tmp_path, monkeypatch
 ):
-    asked = {"baseline": "plain", "repair": "observed", "library": "ten", "seeds": range(2)}
+    asked = {"baseline": "plain", "repair": "observed", "library": "ten"}
     asked |= {"system": SYSTEM, "fault": "mass:scale=0.6", "progress": False}
     monkeypatch.setenv("RAY_ADDRESS", head.address)
     there = partial(faultpath.audit, folder=tmp_path / "there", executor="ray", workers=1, **asked)
@@ -158,6 +130,37 @@ def test_an_audit_that_was_stopped_on_a_cluster_goes_on_there_to_the_same_bytes(
     assert run.provenance.machine.executor in (run.folder / "report.html").read_text()
 
 
+@pytest.fixture(scope="module")
+def hands(head):
+    """The one worker that the cluster has room for: for the tests below alone."""
+    with RayWorkers(head.address, 1) as workers:
+        yield workers
+
+
+def test_an_actor_is_a_worker_like_any_other(hands):
+    heard = []
+    assert end_of(hands, partial(send_message, "news"), heard.append) == Returned(None)
+    assert heard == ["news"]
+    first = end_of(hands, os.getpid)
+    assert end_of(hands, os.getpid) == first, "a number stands for a memory that stays"
+    assert end_of(hands, partial(os.getenv, "OMP_NUM_THREADS")) == Returned("1")
+    assert end_of(hands, os.getcwd) == Returned(os.getcwd())
+    assert end_of(hands, elsewhere).value.startswith("node ")
+    failed = end_of(hands, partial(int, "none"))
+    assert isinstance(failed, Failed)
+    assert "Traceback" in failed.error.__notes__[0]
+    lost = end_of(hands, partial(os._exit, 3))
+    assert isinstance(lost, Lost)
+    assert lost.how.startswith("the worker on node ")
+    second = end_of(hands, os.getpid)
+    assert second != first
+    hands.submit(0, partial(time.sleep, 600))
+    assert list(hands.free()) == []
+    hands.cancel(0)
+    assert end_of(hands, os.getpid) not in (first, second)
+    assert elsewhere() == ""
+
+
 @pytest.mark.parametrize(
     ("option", "says"),
     [
@@ -165,20 +168,13 @@ def test_an_audit_that_was_stopped_on_a_cluster_goes_on_there_to_the_same_bytes(
         ("PLACE", r"on node \S+ of the Ray cluster: .*PLACE is not set.*every node needs the same"),
     ],
 )
-def test_a_node_with_another_system_is_named(head, tmp_path, monkeypatch, option, says):
+def test_a_node_with_another_system_is_named(hands, tmp_path, monkeypatch, option, says):
     monkeypatch.setenv("PLACE", "here")  # a node keeps the environment in which it was started
-    file = tmp_path / "other.py"
-    file.write_text(OTHER)
-    spec = SystemSpec(name=f"{file}:create", options={"needs": option})
+    system = written(tmp_path, base="weighed.ToySystem", create=OTHER)
+    spec = SystemSpec(name=system, options={"needs": option})
     asked = plan().model_copy(update={"system": spec})
-    with RayWorkers(head.address, 1) as hands, pytest.raises(UserError, match=says):
+    with pytest.raises(UserError, match=says):
         run_plan(asked, tmp_path / "run", executor=hands)
-
-
-@pytest.fixture(scope="module")
-def hands(head):
-    with RayWorkers(head.address, 1) as workers:
-        yield workers
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from toy_plan import SCENES, UNITS, plan, plan_of
-from toy_system import CONSUMERS, STEPS, ToySystem
+from weighed import READERS, ToySystem
 
 from faultpath.core.errors import Stopped
 from faultpath.loop import Reading
@@ -52,7 +52,9 @@ class Odd(ToySystem):
                 import torch
 
                 state = torch.ones(len(scenes))
-                got = taps.deliver("mass", CONSUMERS[0], Reading(state, "mass", STEPS), STEPS)
+                got = taps.deliver(
+                    "mass", READERS[0], Reading(state, "mass", ToySystem.steps), ToySystem.steps
+                )
                 if kind == "writes":
                     got *= 2.0
                 if kind == "plant writes":  # into what it has delivered, and the reader has kept

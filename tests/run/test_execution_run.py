@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from toy_plan import FAULT, SCENES, UNITS, plan, rows
-from toy_system import STEPS
+from weighed import ToySystem
 
 from faultpath.core.errors import UserError
 from faultpath.core.files import parquet
@@ -59,12 +59,18 @@ def test_the_fault_changes_what_it_should(whole):
     assert {o.altered_steps for o in table.outcomes("observed", "correct", 0)} == {0}
 
 
-def test_worker_processes_give_the_same_bytes(whole, tmp_path):
+def test_worker_processes_give_the_same_bytes_and_progress_never_goes_back(whole, tmp_path):
     result, folder = whole
-    other = run_plan(plan(), tmp_path, workers=2)
+    seen: list[Progress] = []
+    other = run_plan(plan(), tmp_path, workers=2, progress=seen.append)
     assert other.outcomes_sha256 == result.outcomes_sha256
     for name in ("outcomes.parquet", "traces.parquet", "deliveries.json"):
         assert (tmp_path / name).read_bytes() == (folder / name).read_bytes()
+    rows = [int(progress.count.split()[0]) for progress in seen]
+    assert rows == sorted(rows)
+    assert (rows[0], rows[-1], seen[-1].count) == (0, 120, "120 of 120 trials")
+    assert seen[-1].done == seen[-1].total == 10 * len(plan().treatments())
+    assert all(0 <= progress.done <= progress.total for progress in seen)
 
 
 def test_the_tables_read_back(whole):
@@ -89,8 +95,8 @@ def test_a_selection_in_any_order_gives_the_rows_of_the_whole(whole, tmp_path, s
 
 def test_every_row_brings_what_its_taps_did(whole):
     deliveries = whole[0].deliveries
-    every = STEPS * len(SCENES)
-    faulted = (STEPS - FAULT.onset_step) * len(SCENES)
+    every = ToySystem.steps * len(SCENES)
+    faulted = (ToySystem.steps - FAULT.onset_step) * len(SCENES)
     planner = TapCount("mass", "planner.thrust", every, faulted, faulted)
     struck = TapCount("mass", "observer.balance", every, faulted, faulted)
     spared = TapCount("mass", "observer.balance", every, 0, 0)
@@ -116,16 +122,6 @@ def test_a_shard_without_a_delivery_log_is_named_and_run_again(whole, tmp_path, 
     assert len(notices) == after.blocks_computed
     assert all("kept no delivery log" in notice for notice in notices)
     assert after.deliveries == whole[0].deliveries
-
-
-def test_progress_reaches_the_end_and_never_goes_back(tmp_path):
-    seen: list[Progress] = []
-    run_plan(plan(), tmp_path, workers=2, progress=seen.append)
-    rows = [int(progress.count.split()[0]) for progress in seen]
-    assert rows == sorted(rows)
-    assert (rows[0], rows[-1], seen[-1].count) == (0, 120, "120 of 120 trials")
-    assert seen[-1].done == seen[-1].total == 10 * len(plan().treatments())
-    assert all(0 <= progress.done <= progress.total for progress in seen)
 
 
 def test_bookkeeping_grows_with_the_rows_and_not_with_rows_times_blocks(tmp_path, monkeypatch):

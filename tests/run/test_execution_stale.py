@@ -2,6 +2,7 @@
 
 import re
 import sys
+from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -9,7 +10,7 @@ import pytest
 from stale_toys import Mine
 
 from faultpath.core.errors import UserError
-from faultpath.run.execution.provenance import run_provenance
+from faultpath.run.execution.provenance import RunProvenance, run_provenance
 from faultpath.run.execution.runner import run_plan
 from faultpath.run.work.processes import local
 
@@ -17,8 +18,7 @@ PLACES = ("file", "helper", "data")
 
 
 @pytest.fixture
-def mine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Mine:
-    monkeypatch.setattr(sys, "path", list(sys.path))
+def mine(tmp_path: Path) -> Mine:
     return Mine(tmp_path / "mine")
 
 
@@ -39,18 +39,21 @@ def _distances(result) -> list[float]:
     return [row.outcome.metrics["distance"] for row in result.trials]
 
 
-@pytest.mark.parametrize("place", PLACES)
-def test_after_an_edit_nothing_stale_comes_back(place, mine, tmp_path):
-    before = run_plan(mine.plan(), tmp_path / "run", workers=1)
-    shards = {p: p.read_bytes() for p in (tmp_path / "run").rglob("*.parquet")}
-    edited = _edit(mine, place)
-    with pytest.raises(UserError, match=rf"other code than this.*{edited}"):
-        run_plan(mine.plan(), tmp_path / "run", workers=1)
-    assert {p: p.read_bytes() for p in (tmp_path / "run").rglob("*.parquet")} == shards
-    after = run_plan(mine.plan(), tmp_path / "new", workers=1)
-    assert after.blocks_kept == 0
-    assert after.system_fingerprint != before.system_fingerprint
-    assert _distances(after) == pytest.approx([x + 1.0 for x in _distances(before)])
+def test_after_an_edit_nothing_stale_comes_back(mine, tmp_path):
+    folder = tmp_path / "run"
+    before = run_plan(mine.plan(), folder, workers=1)
+    for place in PLACES:
+        kept = {p: p.read_bytes() for p in folder.rglob("*.parquet")}
+        edited = _edit(mine, place)
+        with pytest.raises(UserError, match=rf"other code than this.*{edited}"):
+            run_plan(mine.plan(), folder, workers=1)
+        assert {p: p.read_bytes() for p in folder.rglob("*.parquet")} == kept
+        folder = tmp_path / place
+        after = run_plan(mine.plan(), folder, workers=1)
+        assert after.blocks_kept == 0
+        assert after.system_fingerprint != before.system_fingerprint
+        assert _distances(after) == pytest.approx([x + 1.0 for x in _distances(before)])
+        before = after
 
 
 def test_edited_back_the_trials_are_kept(mine, tmp_path):
@@ -106,25 +109,44 @@ def test_data_that_are_not_there_are_named(mine, tmp_path):
         run_plan(mine.plan(), tmp_path / "run", workers=0)
 
 
-def _finished(mine: Mine, notices: list[str] | None = None):
-    folder = mine.file.parent.parent / "run"
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory) -> Iterator[tuple[Mine, RunProvenance]]:
+    """A system with a finished run beside it."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sys, "path", list(sys.path))
+        mine = Mine(tmp_path_factory.mktemp("finished") / "mine")
+        yield mine, _finished(mine)
+
+
+@pytest.fixture
+def finished(whole) -> Iterator[tuple[Mine, RunProvenance]]:
+    """The same, whose files are put back after the test, and whose run has to be as it was."""
+    mine, _ = whole
+    sources, before = ({p: p.read_bytes() for p in _files(mine, name)} for name in ("mine", "run"))
+    yield whole
+    assert {p: p.read_bytes() for p in _files(mine, "run")} == before
+    for path, data in sources.items():
+        path.write_bytes(data)
+
+
+def _files(mine: Mine, folder: str) -> list[Path]:
+    return [p for p in (mine.file.parents[1] / folder).rglob("*.*") if p.is_file()]
+
+
+def _finished(mine: Mine, notices: list[str] | None = None) -> RunProvenance:
+    folder = mine.file.parents[1] / "run"
     said = (notices if notices is not None else []).append
     result = run_plan(mine.plan(), folder, workers=1, notice=said)
     return run_provenance(folder, [], result, datetime.now(UTC), ["again"], local(1))
 
 
-def _contents(mine: Mine) -> dict[Path, bytes]:
-    return {path: path.read_bytes() for path in (mine.file.parent.parent / "run").rglob("*.*")}
-
-
 @pytest.mark.parametrize("file", ["file", "helper"])
-def test_code_that_repeats_a_finished_run_computes_nothing_and_leaves_it_as_it_is(file, mine):
-    first, before = _finished(mine), _contents(mine)
+def test_code_that_repeats_a_finished_run_computes_nothing_and_leaves_it_as_it_is(file, finished):
+    mine, first = finished
     edited: Path = getattr(mine, file)
     edited.write_text(edited.read_text() + "# a word\n")
     notices: list[str] = []
     assert _finished(mine, notices) == first
-    assert _contents(mine) == before
     shown = rf"before {edited.name} changed\. \d+ of its trials ran again and are equal to the bit"
     assert re.search(shown, notices[0])
 
@@ -142,9 +164,8 @@ def test_code_that_repeats_a_finished_run_computes_nothing_and_leaves_it_as_it_i
         ),
     ],
 )
-def test_code_that_does_not_overwrites_nothing_and_names_a_trial(file, old, new, differs, mine):
-    _finished(mine)
-    before = _contents(mine)
+def test_code_that_does_not_overwrites_nothing_and_names_a_trial(file, old, new, differs, finished):
+    mine, _ = finished
     edited: Path = getattr(mine, file)
     edited.write_text(edited.read_text().replace(old, new))
     with pytest.raises(UserError) as refused:
@@ -152,4 +173,3 @@ def test_code_that_does_not_overwrites_nothing_and_names_a_trial(file, old, new,
     where = "(correct inputs, seed 0, "
     for part in (f"changed since: {edited.name}", where, "'s0", differs, "choose a new one"):
         assert part in str(refused.value)
-    assert _contents(mine) == before

@@ -1,35 +1,16 @@
 """Files that a system reads and does not declare: an edit would go unnoticed."""
 
 import os
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+from written import written
 
 from faultpath.api.audit import audit
 from faultpath.core.errors import UserError
 from faultpath.run.opened import reads
 
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
-MINE = f"""
-import sys
-sys.path.append({str(EXAMPLES)!r})
-from pathlib import Path
-import numpy as np
-from toy import Toy
-
-class Mine(Toy):
-    {{declared}}
-    def __init__(self):
-        {{built}}
-    def run(self, variant, scenes, taps, seed):
-        {{stepped}}
-        return super().run(variant, scenes, taps, seed)
-
-def create() -> Mine:
-    return Mine()
-"""
 READ = "np.load(Path(__file__).with_name('gain.npy'))"
 ASKED = {
     "baseline": "calibrated",
@@ -42,10 +23,7 @@ ASKED = {
 }
 
 
-@pytest.fixture(autouse=True)
-def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys, "path", list(sys.path))
+pytestmark = pytest.mark.usefixtures("elsewhere", "without_pages")
 
 
 def old(path: Path) -> Path:
@@ -54,12 +32,11 @@ def old(path: Path) -> Path:
     return path
 
 
-def mine(declared: str = "", built: str = "", stepped: str = "") -> str:
+def mine(declared: str = "", built: str = "pass", stepped: str = "pass") -> str:
     np.save("gain.npy", np.ones(3))
     old(Path("gain.npy"))
-    text = MINE.format(declared=declared, built=built or "pass", stepped=stepped)
-    Path("mine.py").write_text(text)
-    return "mine.py:create"
+    run = f"def run(self, *asked):\n    {stepped}\n    return super().run(*asked)"
+    return written(Path(), f"{declared}\ndef __init__(self):\n    {built}\n{run}")
 
 
 @pytest.mark.parametrize(("when", "workers"), [("built", 0), ("stepped", 0), ("stepped", 1)])

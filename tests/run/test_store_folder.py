@@ -68,24 +68,15 @@ def test_a_shard_reads_back(folder):
     assert folder.load_shard("another", SCENES, _unexpected) is None
 
 
-@pytest.mark.parametrize(
-    "damage",
-    [
-        lambda data: data[: len(data) // 2],
-        lambda data: data[:40] + bytes([data[40] ^ 1]) + data[41:],
-        lambda data: encode_shard(
-            "k", Done(tuple(replace(o, time_s=9.0) for o in _outcomes()), TAPS)
-        ),
-    ],
-    ids=["truncated", "flipped", "edited"],
-)
-def test_a_damaged_shard_is_named_and_removed(folder, damage):
+def test_an_edited_shard_is_named_and_removed(folder):
+    """What is cut or flipped, tests of disturbed runs spoil."""
     (shard,) = folder.shards.iterdir()
-    shard.write_bytes(damage(shard.read_bytes()))
+    edited = tuple(replace(outcome, time_s=9.0) for outcome in _outcomes())
+    shard.write_bytes(encode_shard("k", Done(edited, TAPS)))
     notices: list[str] = []
     assert folder.load_shard("k", SCENES, notices.append) is None
-    assert len(notices) == 1
-    assert str(shard) in notices[0]
+    (notice,) = notices
+    assert str(shard) in notice
     assert not shard.exists()
 
 

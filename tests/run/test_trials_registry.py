@@ -14,11 +14,10 @@ from faultpath.core.errors import UserError
 from faultpath.run import SystemSpec, load_system
 
 ROOT = Path(__file__).resolve().parents[2]
-FILE = Path(__file__).with_name("toy_system.py")
+FILE = ROOT / "tests" / "toys" / "weighed.py"
 
 
 def test_a_file_is_enough_and_may_import_the_file_beside_it(tmp_path, monkeypatch):
-    monkeypatch.setattr(sys, "path", list(sys.path))
     (tmp_path / "parts_of_mine.py").write_text(FILE.read_text())
     (tmp_path / "mine.py").write_text("from parts_of_mine import create\n")
     monkeypatch.chdir(tmp_path)
@@ -63,7 +62,7 @@ def test_two_edits_within_a_second_are_two(tmp_path, edited):
         ("faultpath.absent:create", r"there is no module 'faultpath\.absent'"),
         ("no/such/file.py:create", r"there is no file 'no/such/file\.py'"),
         (f"{FILE}:absent", "has no function 'absent'"),
-        (f"{FILE}:STEPS", "has no function 'STEPS'"),
+        (f"{FILE}:READERS", "has no function 'READERS'"),
         (f"{FILE}:impostor", "returned a object"),
         (f"{FILE}:needy", r"pip install '\.\[torch\]'"),
         (f"{FILE}:", "there is no system"),
@@ -171,7 +170,7 @@ def test_a_system_that_fails_to_load_leaves_nothing_and_may_be_corrected(tmp_pat
 def test_only_what_is_declared_to_build_a_system_is_called(factory, builds, tmp_path):
     (tmp_path / "mine.py").write_text(
         f"import sys\nsys.path.append({str(FILE.parent)!r})\nfrom pathlib import Path\n"
-        "from faultpath import System\nfrom toy_system import ToySystem as Toy\n"
+        "from faultpath import System\nfrom weighed import ToySystem as Toy\n"
         f"def ran(): Path({str(tmp_path / 'ran')!r}).touch()\n{factory}\n"
     )
     spec = SystemSpec(name=f"{tmp_path}/mine.py:create")

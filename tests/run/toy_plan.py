@@ -5,7 +5,7 @@ from pathlib import Path
 from faultpath.faults import Fault, Scale
 from faultpath.run.plan import Plan, Row, SystemSpec, Treatment
 
-SYSTEM = f"{Path(__file__).with_name('toy_system.py')}:create"
+SYSTEM = f"{Path(__file__).parents[1] / 'toys' / 'weighed.py'}:create"
 SCENES = tuple(f"s{i:02d}" for i in range(10))
 FAULT = Fault(channel="mass", intervention=Scale(factor=0.6), onset_step=3)
 CONDITIONS = {

@@ -6,7 +6,7 @@ import faultpath
 
 ROOT = Path(__file__).resolve().parents[2]
 BROKEN = f"{Path(__file__).with_name('broken.py')}:create"
-LOOPS = f"{Path(__file__).with_name('broken_loops.py')}:create"
+LOOPS = f"{ROOT / 'tests' / 'toys' / 'line.py'}:create"
 
 
 def check(name: str = BROKEN, broken: str = "", library: str = "any", **question):

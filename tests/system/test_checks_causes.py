@@ -53,10 +53,10 @@ def test_the_cause_of_what_does_not_repeat_follows_from_runs_in_new_processes(br
 
 def test_a_reader_that_has_its_value_from_elsewhere_fails_and_one_that_ignores_it_does_not():
     (said,) = failed(check(LOOPS, broken="goes round"))["fault delivery"]
-    lead = "Injection point place -> pilot.feedback of variant 'plain', faulted in 4 trials, had no"
-    assert said.startswith(
-        f"{lead} effect, and 'pilot' wrote another order at step 1 in scene 'l0'"
+    lead = (
+        "Injection point position -> pilot.feedback of variant 'plain', faulted in 4 trials, had no"
     )
+    assert said.startswith(f"{lead} effect, and 'pilot' wrote another order at step 1 in scene 'c'")
     for broken in ("goes round, still", "ignores"):
         report = check(LOOPS, broken=broken)
         assert failed(report) == {}

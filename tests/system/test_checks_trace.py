@@ -53,7 +53,12 @@ def test_a_run_of_ones_own_is_traced_and_a_fault_shows_whom_it_reaches():
         (BROKEN, "guarded", "deaf", r"declares that guard.limit reads 'range', but in the first 3"),
         (BROKEN, "bare", "of the future", r"tap range -> pilot.approach: the reading is of step 1"),
         (BROKEN, "bare", "another source", r"of source 'sonar', but the channel is bound to 'las"),
-        (LOOPS, "plain", "undeclared port", r"ended early: .*'place' at 'other', a port that it d"),
+        (
+            LOOPS,
+            "plain",
+            "undeclared port",
+            r"ended early: .*'position' at 'other', a port that it d",
+        ),
     ],
 )
 def test_what_is_not_as_declared_is_found(name, variant, broken, said):

@@ -29,6 +29,7 @@ def test_new_systems_pass_their_own_tests(tmp_path):
     assert f"{3 * len(kinds)} passed" in done.stdout
 
 
+@pytest.mark.usefixtures("without_pages")
 @pytest.mark.parametrize("kind", TEMPLATES)
 def test_the_audit_that_a_template_suggests_shows_a_reversal(kind, tmp_path, monkeypatch, capsys):
     """Once every cell of it said 100 %."""

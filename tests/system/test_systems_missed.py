@@ -8,6 +8,7 @@ import faultpath
 from faultpath.system import ComposedSystem, writes
 from faultpath.system.gymnasium import GymnasiumPlant
 
+pytestmark = pytest.mark.usefixtures("without_pages")
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "torch.md").read_text("utf-8")
 POLE = slice(2, 4)
 

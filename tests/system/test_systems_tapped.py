@@ -174,6 +174,7 @@ def system(**variants):
     return ComposedSystem("drive", plant, {name: [m] for name, m in variants.items()}, units)
 
 
+@pytest.mark.usefixtures("without_pages")
 def test_parts_inside_one_module_are_readers_of_their_own():
     made = system(fixed=drive(0.0), slow=drive(0.0, late=True))
     assert set(made.interface.channel("flux").readers) == {"observer.flux", "control.flux"}

@@ -178,6 +178,7 @@ def system(**variants):
     return ComposedSystem("cruise", plant, {n: [m] for n, m in variants.items()}, units)
 
 
+@pytest.mark.usefixtures("without_pages")
 def test_calls_between_their_parts_are_readers_of_their_own() -> None:
     run = audit(
         system(one=cruise(), two=cruise()), baseline="one", repair="two", fault="speed:scale=3"
