@@ -11,6 +11,7 @@ from faultpath.analyses.map.study import MapPlan, plan_map
 from faultpath.analyses.planning import plan_audit
 from faultpath.core.errors import UserError
 from faultpath.faults import FaultText
+from faultpath.report.sentences.maps import size_label
 from faultpath.run import SystemSpec, load_system
 from faultpath.run.question import AuditQuestion, MapQuestion, ask
 from faultpath.system import library_of
@@ -66,7 +67,7 @@ def test_an_offset_is_in_the_unit_of_the_reading() -> None:
     question |= {"against": ("approach", "speedometer"), "up_to": 0.5, "scenes": 4}
     planned = plan_map(system, dock, ask(MapQuestion, question), library_of(system, "floors"))
     assert not planned.facts.relative
-    assert planned.facts.size_label(-0.25) == "−0.25 m"
+    assert size_label(planned.facts, -0.25) == "−0.25 m"
     (fault,) = planned.study([(0, 16)]).rows[1].treatment.faults
     assert (fault.onset_step, fault.intervention.by) == (5, 0.25)  # type: ignore[union-attr] - a bias
 
