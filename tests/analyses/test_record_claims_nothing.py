@@ -105,7 +105,7 @@ def run(
 def sentences(made: AuditResult) -> Iterator[str]:
     yield words(made).headline
     yield from words(made).sentences
-    yield from words(made).would_change
+    yield from words(made).would_change or ()
     yield from answers(made).values()
 
 

@@ -9,7 +9,7 @@ from outcome_tables import BASELINE, MOST_WORDS, REPAIR, record, sequential
 from faultpath.analyses.effects import Effect
 from faultpath.analyses.model import CORRECT, SHARED, AuditResult, where
 from faultpath.report.sentences.answers import answers
-from faultpath.report.sentences.words import words
+from faultpath.report.sentences.headline import headline
 
 State = tuple[int, str]
 """Who is decided to be ahead, and what is special: `floor`, `idle`, `small`."""
@@ -112,7 +112,7 @@ def places(clause: str, conditions: list[str]) -> Iterator[str]:
 def test_every_headline_is_short_and_true() -> None:
     seen = 0
     for it in combinations():
-        said, seen = words(it).headline, seen + 1
+        said, seen = headline(it), seen + 1
         assert len(said.split()) <= MOST_WORDS, said
         assert said.endswith("."), said
         assert "trained" not in said
