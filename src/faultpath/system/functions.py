@@ -30,8 +30,8 @@ class FunctionPlant(EpisodePlant):
         dt_s: Length of a control step, s.
         succeeded: Says of each finished episode whether it was a success.
         metrics: Further measures of each finished episode, by name.
-        over: `over(state)` says of the state of one scene, true or false, whether it ends before its
-            time; without it none does.
+        over: `over(state)` says of the state of one scene, true or false, whether it ends before
+            its time; without it none does.
         trace: `trace(state)` returns where it is, `(x, y)` or `(x, y, z)` in metres.
         render: `render(state)` returns points `(x, y)` of a line that draws it, in metres.
     """

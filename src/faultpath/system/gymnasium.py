@@ -54,8 +54,8 @@ class GymnasiumPlant(EpisodePlant):
         setup: Called as `setup(env, rng)` for each scene, after its seeded reset, to set model
             parameters and disturbances. The values that it returns by name are sources too, and
             are hashed: two trials whose scenes were set up differently are no pair.
-        observation: `observation(env)` returns what modules observe at the start, for a `setup` that
-            changes it, as one that sets the environment's state does; default what the reset
+        observation: `observation(env)` returns what modules observe at the start, for a `setup`
+            that changes it, as one that sets the environment's state does; default what the reset
             returned.
         on_step: Called as `on_step(env, rng, step)` before each step, to disturb the scene. It
             draws other numbers at each step and seed, and the same for every

@@ -92,8 +92,8 @@ def _determinism(name: str, seen: Seen) -> Check:
     failures = list[str]()
     for variant in seen.unsteady():
         cause = (
-            "draw from the `rng` of `step` or from faultpath.generator, not from np.random, and keep "
-            "what a module remembers in its `memory`, not in a global variable; in worker "
+            "draw from the `rng` of `step` or from faultpath.generator, not from np.random, and "
+            "keep what a module remembers in its `memory`, not in a global variable; in worker "
             "processes, a check can tell the two apart."
         )
         if seen.apart:
