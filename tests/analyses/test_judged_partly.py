@@ -53,6 +53,9 @@ def test_a_scene_without_a_seed_counts_by_its_other_seeds():
     assert made.scenes == 100
     assert made.effects[0].void == 1
     assert len(made.effects[0].won) == 3
+    assert any(
+        "1 trial of new failed or is missing, 1 of old" in said for said in words(made).findings
+    )
 
 
 def test_tasks_with_a_scene_less_are_compared_by_what_all_tasks_have():

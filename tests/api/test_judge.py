@@ -162,7 +162,21 @@ def test_few_scenes_and_ties_claim_nothing(n: int, won: tuple[bool, bool], tmp_p
 ROW = "old,s0,0,,1,h\nnew,s0,0,,1,h\n"
 REFUSED: dict[str, tuple[str, dict[str, Any], str]] = {
     "variant": (HEADER + ROW, {"repair": "newer"}, "unknown version 'newer'; did you mean 'new'?"),
-    "twice": (HEADER + ROW + ROW, {}, "all.csv, line 4 and .*all.csv, line 2 are the same trial"),
+    "twice": (
+        HEADER + ROW + ROW,
+        {},
+        "all.csv, line 4 and .*all.csv, line 2 are the same trial .* as in --column condition=NAME",
+    ),
+    "twice under a condition": (
+        HEADER + (ROW + ROW).replace(",0,,", ",0,nominal,"),
+        {},
+        "are the same trial .* as in --column seed=NAME",
+    ),
+    "semicolons": (
+        (HEADER + ROW).replace(",", ";"),
+        {},
+        "all.csv, line 1: separates its columns by ';'; separate them by ','",
+    ),
     "unpaired": (HEADER + ROW.replace("new,s0", "new,s1"), {}, "no trial of 'old' has its pair"),
     "condition": (HEADER + ROW.replace(",0,,", ",0,fog,"), {}, r"no condition is nominal \(fog\)"),
     "nominal": (HEADER + ROW, {"nominal": "fog"}, "no such condition: unknown condition 'fog'"),
@@ -203,6 +217,26 @@ def test_what_cannot_be_judged_is_refused(
     with pytest.raises(UserError, match=says):
         judged(file, tmp_path / "run", **more)
     assert not (tmp_path / "run").exists()
+
+
+@pytest.mark.parametrize(
+    ("conditions", "noticed"),
+    [
+        (("nominal", "both", "perception"), True),
+        (("nominal", "shared", "perception"), False),
+        (("nominal", "perception"), False),
+    ],
+)
+def test_a_shared_condition_of_another_name_is_asked_for(
+    conditions: tuple[str, ...], noticed: bool, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    file = table(tmp_path / "all.csv", dict.fromkeys(conditions, WON))
+    judged(file, tmp_path / "run")
+    sentence = (
+        "No condition is named 'shared': 'both' and 'perception' are taken as modules; give "
+        "shared='both' if it has the fault at every module."
+    )
+    assert (sentence in caplog.text) == noticed
 
 
 def test_the_largest_numbers_that_are_read_can_be_added_up(tmp_path: Path) -> None:

@@ -1,10 +1,12 @@
 """Every mistake ends in one sentence that names what is wrong, with status 2, and harms nothing."""
 
 import pytest
-from cli_runs import TOY, audit, faultpath
+from cli_runs import SYSTEMS, TOY, audit, faultpath
+from pydantic import TypeAdapter
 
 from faultpath.core.errors import UserError
 from faultpath.run.question import CheckQuestion, ask
+from faultpath.run.texts import Seeds
 
 TOY_MISTAKES = {
     "unknown system": ({"system": "quadcopter"}, ["'quadcopter'", "installed: quadrotor"]),
@@ -74,6 +76,9 @@ LINES = [
     (["report", ".", "--out", "a.html"], ["--out", "two or more"]),
     (["trace", "a\x1b[31mb.py:create"], ["\\x1b[31m"]),
     (["trace", TOY, "--seed", "9" * 30], ["--seed"]),
+    (["trace", TOY, "--library", "selection"], ["unknown library 'selection'", "known: carts"]),
+    (["check", TOY, "--library", "held-out"], ["unknown library 'held-out'", "known: carts"]),
+    (["check", TOY, "--library", "foo"], ["'foo'"]),
     (["check", TOY, "--variants", "blind,,calibrated"], ["--variants", "empty name"]),
     (["audit", TOY, "--library="], ["--library=", "empty"]),
     (["audit", TOY, "--library=a", "--library", "a"], ["--library", "twice"]),
@@ -93,6 +98,20 @@ LINES = [
 def test_a_mistake_about_the_command_itself(line, names, tmp_path):
     assert len(faultpath(*line).refused(*names)) < 800
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_mistake_names_the_library_that_stands_for_the_one_not_named():
+    ended = faultpath("trace", TOY, "--scene", "5")
+    assert ended.status == 2
+    assert "faultpath: library 'carts': unknown scene '5'; known: " in ended.err
+
+
+def test_seeds_are_numbers_and_ranges():
+    seeds = TypeAdapter[tuple[int, ...]](Seeds)
+    assert seeds.validate_python("0..2,7") == (0, 1, 2, 7)
+    for text, said in (("0..9999", "at most 1000"), ("2..0", "at least one"), ("0-2", "0..2")):
+        with pytest.raises(ValueError, match=said):
+            seeds.validate_python(text)
 
 
 @pytest.mark.parametrize(
@@ -137,3 +156,10 @@ def test_lists_of_names_hold_each_name_once_and_no_empty_one(text):
     with pytest.raises(UserError, match=r"empty name|'a' twice"):
         ask(CheckQuestion, {"variants": text})
     assert ask(CheckQuestion, {"variants": "a, b"}).variants == ("a", "b")
+
+
+def test_checks_that_nothing_could_be_seen_for_are_one_line():
+    line = ["check", f"{SYSTEMS / 'slow_toy.py'}:broken", "--set", "where=cart", "--workers", "0"]
+    shown = faultpath(*line).out.splitlines()
+    (unjudged,) = [row for row in shown if row.startswith("not judged")]
+    assert unjudged.startswith("not judged  determinism, scene independence, pairing, ")

@@ -133,10 +133,13 @@ def _by_address(
         address = (row.variant, names[row.condition], key)
         if (before := trials.setdefault(address, row)) is not row:
             seed = f", seed {row.seed}" if row.seed else ""
+            columns = "--column seed=NAME"
+            if not any(names):  # of no trial the condition is known
+                columns = f"--column condition=NAME or {columns}"
             raise UserError(
                 f"{row.where} and {before.where} are the same trial (version {row.variant}, scene "
                 f"{scene}{seed}): give each once, or name the column that tells them apart, as in "
-                "--column seed=NAME."
+                f"{columns}."
             )
     return trials
 

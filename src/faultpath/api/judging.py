@@ -13,6 +13,7 @@ import numpy as np
 
 from faultpath.analyses.decide import decide
 from faultpath.analyses.judging import PairedResults, pair_results
+from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.api.audit import with_stored
 from faultpath.api.display import Display, display
 from faultpath.api.folders import MADE_FROM, RECORD, SYSTEM, as_text
@@ -20,6 +21,7 @@ from faultpath.api.job import with_question_signature
 from faultpath.api.runs import Run
 from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import begin, locked, write_text
+from faultpath.core.text import series
 from faultpath.interface import Interface
 from faultpath.report.inputs import ReportInput
 from faultpath.report.sentences.findings import describe
@@ -62,6 +64,8 @@ def judge(
     started = datetime.now(UTC)
     rows, sources = read_results(named, question)
     paired = pair_results(rows, question)
+    if notice := _modules_notice(paired, shown):
+        shown.say(notice)
     folder = question.folder or _folder(paired, sources)
     if (folder / "manifest.json").exists():
         raise UserError(f"{folder} holds an audit's trials: give another folder with --out.")
@@ -84,6 +88,19 @@ def judge(
         for finding in paired.findings:
             shown.say(describe(finding))
     return run
+
+
+def _modules_notice(paired: PairedResults, shown: Display) -> str:
+    """Say which conditions are taken for modules, where the shared one may be among them."""
+    names = [condition.name for condition in paired.conditions if condition.name != CORRECT]
+    if SHARED in names or len(names) < 2:
+        return ""
+    option = f"--shared {names[0]}" if shown.is_command else f"shared={names[0]!r}"
+    modules = series([f"'{name}'" for name in names])
+    return (
+        f"No condition is named 'shared': {modules} are taken as modules; give {option} if it has "
+        "the fault at every module."
+    )
 
 
 def _folder(paired: PairedResults, sources: dict[str, str]) -> Path:

@@ -84,11 +84,18 @@ def check(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     fault = f", and with {report.fault}" if report.fault else ""
     about = f"{', '.join(report.variants)} in {scenes}, seed {report.seed}{fault}"
     console.print(Text(f"{report.system}: {about}", "bold"))
+    unjudged: dict[str, list[str]] = {}
     for result in report.checks:
+        if result.status == "not judged" and not result.remarks:
+            unjudged.setdefault(result.says, []).append(result.name)
+            continue
         status = Text(result.status, styles[result.status])
         console.print(Text.assemble(status, f"  {result.name}: {result.says}"))
         for text in (*result.failures, *(f"Remark: {remark}" for remark in result.remarks)):
             console.print(Padding(Text(f"- {text}"), (0, 0, 0, 2)))
+    for says, names in unjudged.items():
+        status = Text("not judged", styles["not judged"])
+        console.print(Text.assemble(status, f"  {', '.join(names)}: {says}"))
     failed = sum(result.status == "failed" for result in report.checks)
     remarks = counted(sum(len(result.remarks) for result in report.checks), "remark")
     text = f"{counted(failed, 'check')} failed" if failed else "No check failed"

@@ -11,6 +11,10 @@ from faultpath.core.numbers import number_in
 
 LARGEST = 2**63 - 1
 """The largest seed that the tables hold."""
+_SEEDS = re.compile(r"(-?[0-9]+)(?:\.\.([0-9]+))?")
+"""A seed, or the first and the last of a range."""
+_MOST = 1000
+"""Seeds of one range."""
 
 
 def several(value: object) -> tuple[object, ...]:
@@ -21,19 +25,28 @@ def several(value: object) -> tuple[object, ...]:
 
 
 def read_seeds(value: object) -> object:
-    """Return seeds, from `0,1,2` too; `ValueError` for what are none."""
+    """Return seeds, from `0,1,2` and `0..2` too; `ValueError` for what are none."""
     seeds = several(value)
     if isinstance(value, str):
-        parts = [part.strip() for part in value.split(",")]
-        if not all(re.fullmatch(r"-?[0-9]+", part) for part in parts):
-            raise ValueError(f"{value!r:.80} is not a list of whole numbers, for example 0,1,2")
-        seeds = tuple(int(part) if len(part) < 20 else LARGEST + 1 for part in parts)
+        parts = [_SEEDS.fullmatch(part.strip()) for part in value.split(",")]
+        if not all(parts):
+            raise ValueError(
+                f"{value!r:.80} is not a list of whole numbers, for example 0,1,2, or 0..2"
+            )
+        ends = [(_seed(part[1]), _seed(part[2] or part[1])) for part in parts if part]
+        if any(last - first >= _MOST for first, last in ends):
+            raise ValueError(f"{value!r:.80} holds too many seeds: a range has at most {_MOST}")
+        seeds = tuple(seed for first, last in ends for seed in range(first, last + 1))
     for seed in seeds:
         if not isinstance(seed, int) or isinstance(seed, bool) or not 0 <= seed <= LARGEST:
             raise ValueError(f"{seed!r:.80} is not a seed: give whole numbers from 0 to 2^63 - 1")
     if not seeds or len(set(seeds)) < len(seeds):
         raise ValueError("give at least one seed, each of them once")
     return seeds
+
+
+def _seed(text: str) -> int:
+    return int(text) if len(text) < 20 else LARGEST + 1
 
 
 def read_sizes(value: object) -> object:

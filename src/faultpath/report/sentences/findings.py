@@ -115,7 +115,9 @@ def _failed_trials(record: AuditResult) -> Iterator[str]:
             continue
         if not (missing.repair or missing.baseline or missing.unsettled):
             continue
-        lost = "failed or missing" if record.facts.judged else "failed"
+        lost = "failed"
+        if record.facts.judged:
+            lost += " or is missing" if missing.repair == 1 else " or are missing"
         yield (
             f"{capital(where(effect.condition))}, {counted(missing.repair, 'trial')} of "
             f"{question.repair} {lost}, {missing.baseline} of {question.baseline}: depending on "

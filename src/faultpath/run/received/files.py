@@ -30,6 +30,9 @@ _READ = ("eval_info.json", "samples_*.jsonl", "*.eval", "????-??-??T*.json")
 _SAMPLES = re.compile(r"samples_(.+)_\d{4}-\d\d-\d\dT[\d.-]+\.jsonl")
 _OF_SAMPLES = ("doc_id", "target", "filter", "metrics")
 
+_MARKS = {";": ";", "\t": "TAB", "|": "|"}
+"""What may stand in place of commas, and how messages show it."""
+
 Cells = Iterator[tuple[str, Mapping[str, Any]]]
 """Each trial with where it stands in its file."""
 
@@ -125,6 +128,8 @@ def _csv(text: str) -> Cells:
         names = next(rows, list[str]())
         if twice := [name for at, name in enumerate(names) if name in names[:at]]:
             raise Misread(f"column '{twice[0]}' appears twice; drop one", 1)
+        if len(names) == 1 and (mark := next((m for m in _MARKS if m in names[0]), "")):
+            raise Misread(f"separates its columns by '{_MARKS[mark]}'; separate them by ','", 1)
         for row in filter(None, rows):
             if len(row) != len(names):
                 problem = f"has {len(row)} cells where the first line names {len(names)} columns"
