@@ -16,7 +16,7 @@ import torch
 from faultpath.loop import Batch
 from faultpath.plugin.data import system_code
 from faultpath.plugin.recording import taps_of
-from faultpath.run import SystemSpec, Treatment
+from faultpath.run import SystemSpec, Treatment, load_system
 from faultpath_quadrotor import native
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.plant.module import ACTION, Flying
@@ -77,7 +77,7 @@ def record(folder: Path, workers: int = 2, progress: Progress | None = None) -> 
 def recipe() -> PoolRecipe:
     """Return what decides the pool's numbers: the system, its weights, and the settings here."""
     spec = SystemSpec(name=Quadrotor.name, options={"clearance": "true"})
-    state = system_code(Quadrotor.parse(**spec.options), spec).state
+    state = system_code(load_system(spec), spec).state
     settings = (LIBRARY, SCENES, LEVELS, VARIANT, SEED, BLOCK, PLATFORM.hash)
     content = repr((sorted(state.data.items()), state.given, code_of(), *settings))
     code = hashlib.sha256(content.encode()).hexdigest()
