@@ -157,7 +157,7 @@ ELSEWHERE = conditional_effect(ONE, ONE, Resamples.draw("other", N, n_resamples=
         (lambda: change(HERE, success_effect(ONE, ONE)), "same resamples"),
         (
             lambda: change(success_effect(ONE, ONE), success_effect(ONE[1:], ONE[1:])),
-            "of 40 and of 39 scenes",
+            f"of {N} and of {N - 1} scenes",
         ),
         (lambda: change(HERE, mean_effect(ONE, ONE, RESAMPLES, "m")), "'pp' and 'm'"),
         (lambda: change(HERE, TRAINED), "one effect is for new seeds"),
