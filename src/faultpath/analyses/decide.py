@@ -1,4 +1,4 @@
-"""From the outcome table to the decision record."""
+"""From trials to the result of an audit."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -39,7 +39,7 @@ def decide(
     trials: Trials,
     findings: Sequence[Finding] = (),
 ) -> AuditResult:
-    """Return the decision record of an audit.
+    """Return the result of an audit.
 
     Each effect rests on the scenes that have its trials, each change on those that both have; a
     condition that has none is left out. The result carries `findings`, and pairs that met different

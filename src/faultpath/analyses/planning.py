@@ -49,7 +49,7 @@ class Audit(Analysis[None]):
         yield Round(self.study, stop=self.stops)
 
     def conclude(self, trials: Trials, deliveries: Deliveries, items: None = None) -> AuditResult:
-        """Return the decision record of a run; raises as `faultpath.analyses.decide`."""
+        """Return the result of a run; raises as `faultpath.analyses.decide`."""
         question = self.question
         conditions = [
             condition.model_copy(
