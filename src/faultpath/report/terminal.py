@@ -1,4 +1,4 @@
-"""Terminal output for a decision record, an interface and a trace."""
+"""Terminal output for a result, an interface and a trace."""
 
 from collections.abc import Iterable
 
@@ -28,7 +28,7 @@ _EFFECTS = (*DIFFERENCE, "holm", "scenes", "void", "break-even")
 
 
 def decision(record: AuditResult, details: bool = False) -> RenderableType:
-    """Return the decision record as text and tables: verdict, success, effects, findings.
+    """Return the result of an audit as text and tables: verdict, success, effects, findings.
 
     `details` adds every sentence of the record, and what would change it.
     """
