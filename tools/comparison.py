@@ -35,6 +35,8 @@ PAGES = {
     "lerobot": ("Relative actions as in LeRobot", "lerobot"),
 }
 """Title and page of the audits that reference runs hold, in the order of the table."""
+TEACHING = ("tutorial", "own-loop", "gymnasium", "lerobot")
+"""Pages whose systems were written to show a reversal."""
 CAMERAS = {
     "marked": "One camera",
     "drift": "One camera",
@@ -119,7 +121,8 @@ def by_system() -> dict[str, list[str]]:
     words: dict[str, list[str]] = {}
     for audit in every_audit():
         system = audit.title.partition(", ")[0].partition(" on a ")[0]
-        words.setdefault(f"[{system}]({{docs}}/{audit.page}.md)", []).append(audit.word)
+        mark = " (teaching example)" if audit.page in TEACHING else ""
+        words.setdefault(f"[{system}]({{docs}}/{audit.page}.md){mark}", []).append(audit.word)
     return words
 
 

@@ -208,14 +208,16 @@ def caption(story: Story) -> str:
     ]
     if succeeds[0] == succeeds[1] or not all(succeeds[2:]):
         raise Wrong(f"{story.scene} does not show what the caption says: choose another scene")
-    winner = baseline if succeeds[0] else repair
+    winner, loser = (baseline, repair) if succeeds[0] else (repair, baseline)
     alike, opposite = (counts[first, not first, True, True] for first in succeeds[:2])
-    total, scenes = counts.total(), facts.n_scenes
-    of = f"{total:,}"
+    of = f"{counts.total():,} scenes"
     if len(facts.seeds) > 1:
-        of += f" ({scenes} scenes, {len(facts.seeds)} trainings)"
+        of = f"{counts.total():,} cases ({facts.n_scenes} scenes, each with {len(facts.seeds)} "
+        of += "trainings)"
+    versions = "; ".join(f"`{name}`: {words}" for name, words in story.variants.items())
     return (
-        f"One scene of {scenes}, chosen because it shows what the numbers below it say. "
-        f"{alike} of {of} go like this one: with the fault at one module only `{winner}` succeeds, "
-        f"and both do with the fault shared. {opposite or 'None'} go the other way round."
+        f"{versions}. One of {of}, chosen because it shows what the numbers below it say. "
+        f"{alike} go like it: with the fault at one module alone `{winner}` succeeds and `{loser}` "
+        f"does not; with the fault shared both succeed. {opposite or 'None'} go the other way "
+        "round."
     )

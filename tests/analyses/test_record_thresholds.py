@@ -4,11 +4,14 @@ from dataclasses import replace
 
 import pytest
 from outcome_tables import conditions, facts, question, record, table
+from rich.console import Console
 
 from faultpath.analyses.audit import audit_analysis
 from faultpath.analyses.decide import decide
 from faultpath.core.errors import UserError
+from faultpath.report.audit_tables import markdown_table
 from faultpath.report.sentences.words import words
+from faultpath.report.terminal import decision
 from faultpath.run import SystemSpec, Trials, load_system
 from faultpath.run.question import AuditQuestion, ask
 from faultpath.system import Metric, Status
@@ -43,6 +46,24 @@ def test_success_at_a_threshold_is_no_crash_and_a_metric_that_is_good_enough(bet
     assert at.difference.value == pytest.approx(percent["new"] - percent["old"])
     assert thresholds.secondary[0].metric_means == pytest.approx((0.495, 0.745))
     assert thresholds.secondary[0].metrics["error"].unit == "rad"
+
+
+@pytest.mark.parametrize(("more", "shown"), [(0.0017, "+0.0017"), (12.0, "+12"), (0.0, "0.00")])
+def test_a_metric_is_in_one_table_with_as_many_digits_as_it_needs(more, shown):
+    text = markdown_table(told("less", {"old": 0.0, "new": more}, 0.5))
+    assert text.count("Secondary, not tested") == 1
+    (metric,) = (line for line in text.splitlines() if line.startswith("| error (rad), old → new"))
+    assert metric.count(f", {shown} ") == 2
+    assert text.count("success if error ≤ 0.5 rad") == 1
+
+
+def test_the_terminal_shows_a_metric_with_a_row_for_each_condition():
+    console = Console(width=80)
+    with console.capture() as captured:
+        console.print(decision(told("less", {"old": 0.0, "new": 0.25}, 0.5)))
+    text = captured.get()
+    rows = text[text.index("Secondary, not tested") :].splitlines()
+    assert any(row.startswith("correct") and "0.74, +0.25" in row for row in rows), text
 
 
 def test_nothing_that_is_decided_depends_on_it():

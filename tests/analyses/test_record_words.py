@@ -89,6 +89,25 @@ def test_what_is_said_is_what_was_approved(name, approved) -> None:
     approved(name, text_of(CASES[name]()))
 
 
+@pytest.mark.parametrize(
+    ("isolated", "shared", "scenes"),
+    [
+        ((60, 0, 9), (70, 0, 9), "in 9 scenes each, never the other way"),
+        ((60, 0, 10), (70, 0, 9), "under the shared fault in 9 scenes, never the other way"),
+        ((60, 0, 9), LOSS, "with the fault at the observer alone in 9 scenes, never the other way"),
+    ],
+)
+def test_a_headline_says_in_how_few_scenes_its_its_effects_show(isolated, shared, scenes):
+    assert words(three((50, 0, 0), isolated, shared)).headline.endswith(f" ({scenes}).")
+
+
+def test_a_headline_does_not_name_one_of_several_equal_counts():
+    cells = {CORRECT: GAIN, "a": (60, 9, 0), "b": (70, 9, 0), SHARED: GAIN}
+    assert words(record(cells)).headline.endswith(
+        "(under 2 of these conditions in 9 scenes each, never the other way)."
+    )
+
+
 @pytest.mark.parametrize("kept", [4, 5])
 def test_of_few_trainings_or_of_copies_nothing_is_said_of_new_ones(kept):
     trainings = [(40 - seed, 30 + seed, 2) for seed in range(kept)]

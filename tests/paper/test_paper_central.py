@@ -36,15 +36,18 @@ def test_the_answer_is_a_reversal_only_where_a_run_decides_one() -> None:
     one = case(1, -1, reversal=True).model_copy(update=fall)
     gone = case(1, 0).model_copy(update=fall)
     for cases, shown in (
-        ([gone], "is not shown"),
-        ([one], "is shown"),
-        ([one, gone], "is shown in 1 of 2 runs"),
-        ([gone, gone], "is shown in 0 of 2 runs"),
-        ([case(0, 0), one], "is shown in 1 of 2 runs"),
+        ([gone], "a loss there, as in the paper, is not shown"),
+        ([one], "a loss there, as in the paper, is shown"),
+        ([one, gone], "in 1 of our 2 sets of scenes the retrained one even lost, as in the paper"),
+        ([gone, gone], "a loss there, as in the paper, is not shown"),
+        (
+            [case(0, 0), one],
+            "in 1 of our 2 sets of scenes the retrained one even lost, as in the paper",
+        ),
     ):
         answer = central.answer(cases)
         assert answer.startswith("The gain does not carry over to the shared error")
-        assert answer.endswith(f"a loss there, as in the paper, {shown}")
+        assert answer.endswith(f"; {shown}")
     assert "the loss was significant" in central.detail([one, gone])
     assert "No run" in central.answer([])
     assert central.detail([]) == central.by_training(one) == ""
@@ -54,6 +57,16 @@ def test_the_answer_is_a_reversal_only_where_a_run_decides_one() -> None:
         assert f"{count} of 3 trained models {verb} the reversal" in sentence
         assert f"more often ({SIGNS[1]}" in sentence
         assert f"less often ({SIGNS[-1]}" in sentence
+
+
+def test_the_table_explains_what_a_first_reader_does_not_know() -> None:
+    level = case(1, 0).model_copy(update={"ahead": ""})
+    (note,) = central.table_of([level]).notes
+    assert note.startswith("Neither ahead at any frequency: ")
+    (note,) = central.table_of([case(1, 0), case(1, -1)]).notes
+    assert note.startswith("Each of our rows is a set of scenes")
+    (note,) = central.table_of([case(1, 0)]).notes
+    assert note.startswith("Rows are")
 
 
 def test_an_effect_takes_its_side_from_its_text_only_where_it_is_detected() -> None:

@@ -46,6 +46,12 @@ def test_every_system_has_a_row_that_counts_its_audits() -> None:
         assert sum(counts) == (int(audits) if int(audits) > 1 else 0)
 
 
+def test_teaching_examples_are_marked() -> None:
+    marked = [system for system in comparison.by_system() if "(teaching example)" in system]
+    assert len(marked) == len(comparison.TEACHING)
+    assert any("Cart" in system for system in marked)
+
+
 @pytest.mark.parametrize(
     ("words", "answer"),
     [

@@ -1,14 +1,16 @@
 """Markdown and terminal tables: escaped, complete, and with the record's numbers."""
 
 import io
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from rich.console import Console
 
+from faultpath.analyses.facts import EarlierAnalysis
 from faultpath.analyses.model import AuditResult
 from faultpath.report.audit_tables import by_condition, decided_for, markdown_table
-from faultpath.report.html import _finding, write_report
+from faultpath.report.html import _finding, report_page, write_report
 from faultpath.report.inputs import ReportInput
 from faultpath.report.terminal import decision
 
@@ -25,6 +27,18 @@ def test_the_terminal_shows_what_was_approved(one_seed: ReportInput, details, ap
     console.print(decision(one_seed.record, details=details))
     lines = (line.rstrip() for line in console.file.getvalue().splitlines())  # type: ignore[attr-defined] - a StringIO
     approved(f"terminal{', details' * details}", "\n".join(lines))
+
+
+def test_findings_stand_below_the_headline_doubts_first(one_seed: ReportInput) -> None:
+    earlier = EarlierAnalysis(scenes=20, primary="shared")
+    record = one_seed.record.model_copy(update={"earlier": (earlier,)})
+    console = Console(width=160)
+    with console.capture() as captured:
+        console.print(decision(record))
+    page = report_page(replace(one_seed, record=record))
+    for text in (captured.get(), page[page.index("<h1") :]):
+        marks = ("Do not choose", "Found in the run", "concluded before", "1 trial of", "80.0")
+        assert list(map(text.index, marks)) == sorted(map(text.index, marks))
 
 
 def test_the_terminal_takes_names_literally(one_seed: ReportInput) -> None:

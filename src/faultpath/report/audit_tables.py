@@ -9,7 +9,7 @@ from faultpath.report.sentences import phrases, wording
 from faultpath.report.sentences.headline import headline
 from faultpath.report.sentences.phrases import adjusted, not_standing, only_alone
 from faultpath.report.tables import MISSING, Entry, Line, Table, line
-from faultpath.report.tables.markdown import blocks
+from faultpath.report.tables.markdown import block
 from faultpath.stats.estimate import Estimate
 
 _VARIANTS = ("baseline", "repair")
@@ -190,7 +190,7 @@ def whole_table(record: AuditResult) -> Table:
 
 def markdown_table(record: AuditResult) -> str:
     """Return the whole table as Markdown, with the question above it and the verdict below."""
-    return blocks(filter(None, (whole_table(record), by_threshold(record))))
+    return block(whole_table(record))
 
 
 def ended(record: AuditResult) -> Table:
@@ -232,50 +232,64 @@ def _median(time_s: float | None) -> str:
 
 
 def secondary(record: AuditResult) -> Table | None:
-    """Return time and metrics, repair minus baseline, by condition; `None` without any."""
+    """Return time and metrics, repair minus baseline, by condition, and success at each threshold
+    of the chosen metric; `None` without any."""
     question = record.question
-    shown = {"time on joint successes (s)": [of.time_s for of in record.secondary]}
+    rows = {"time on joint successes (s)": [_difference(of.time_s) for of in record.secondary]}
     for name, metric in record.facts.metrics.items():
+        if name == question.metric:
+            rows |= _chosen_metric(record, f", {question.baseline} → {question.repair}")
+            continue
         label = f"{metric.label(name)} ({metric.unit})"
-        shown[label] = [of.metrics.get(name) for of in record.secondary]
-
-    def entry(e: Estimate | None) -> str:
-        return MISSING if e is None else wording.with_interval(e, 2)
-
-    lines = [line(label, *map(entry, e)) for label, e in shown.items() if any(e)]
-    if not lines:
+        rows[label] = [_difference(of.metrics.get(name)) for of in record.secondary]
+    shown = {label: row for label, row in rows.items() if set(row) != {MISSING}}
+    if not shown:
         return None
     return Table(
         title=f"Secondary, not tested: {question.repair} minus {question.baseline}",
         corner="Metric",
         columns=_titles(record),
-        lines=tuple(lines),
+        lines=tuple(line(label, *row) for label, row in shown.items()),
     )
 
 
-def by_threshold(record: AuditResult) -> Table | None:
-    """Return the chosen metric and success at each threshold of it, condition by condition; `None`
-    without.
+def chosen_metric(record: AuditResult) -> Table | None:
+    """Return the chosen metric and success at each threshold of it, with a row for each condition;
+    `None` without."""
+    question, rows = record.question, _chosen_metric(record)
+    if not rows:
+        return None
+    return Table(
+        title=f"Secondary, not tested: {question.baseline} → {question.repair}, difference",
+        corner="Condition",
+        columns=tuple(rows),
+        lines=tuple(map(line, _titles(record), *rows.values())),
+    )
+
+
+def _chosen_metric(record: AuditResult, versions: str = "") -> dict[str, list[str]]:
+    """Return the chosen metric and success at its thresholds, by condition; nothing without one.
 
     A trial succeeds at a threshold if it did not crash and its metric is on the better side.
     """
     question = record.question
     if not question.metric:
-        return None
+        return {}
     metric = record.facts.metrics[question.metric]
     label = metric.label(question.metric)
     sign = "≤" if metric.better == "less" else "≥"
-    means: list[str] = []
+    rows: dict[str, list[str]] = {f"{label} ({metric.unit}){versions}": []}
+    (means,) = rows.values()
     for of in record.secondary:
         difference = of.metrics.get(question.metric)
         if difference is None or of.metric_means is None:
             means.append(MISSING)
             continue
-        one, two = of.metric_means
-        means.append(f"{one:.3g} → {two:.3g}, {wording.with_interval(difference, 3)}")
-    lines = [line(f"{label} ({metric.unit})", *means)]
+        digits = wording.digits_of(difference)
+        one, two = (wording.plain(mean, digits) for mean in of.metric_means)
+        means.append(f"{one} → {two}, {_difference(difference)}")
     for number, at in enumerate(sorted(set(question.thresholds))):
-        rates: list[str] = []
+        rates = rows[f"success if {label} {sign} {at:g} {metric.unit}, %"] = []
         for of in record.secondary:
             if len(of.thresholds) <= number:
                 rates.append(MISSING)
@@ -283,13 +297,13 @@ def by_threshold(record: AuditResult) -> Table | None:
             there = of.thresholds[number]
             one, two = map(wording.plain, (there.baseline_percent, there.repair_percent))
             rates.append(f"{one} → {two}, {wording.with_interval(there.difference)}")
-        lines.append(line(f"success if {label} {sign} {at:g} {metric.unit}, %", *rates))
-    return Table(
-        title=f"Secondary, not tested: {question.baseline} → {question.repair}, difference",
-        corner=f"{label}: {metric.better} is better",
-        columns=_titles(record),
-        lines=tuple(lines),
-    )
+    return rows
+
+
+def _difference(estimate: Estimate | None) -> str:
+    if estimate is None:
+        return MISSING
+    return wording.with_interval(estimate, wording.digits_of(estimate))
 
 
 def _titles(record: AuditResult) -> tuple[str, ...]:

@@ -11,7 +11,6 @@ from faultpath.report.adding import adding, adding_panels
 from faultpath.report.audit_tables import (
     SHOWN,
     by_condition,
-    by_threshold,
     constant,
     ended,
     markdown_table,
@@ -43,7 +42,7 @@ def report_page(source: ReportInput) -> str:
     titles = record.titles
     decided = any(effect.sign for effect in record.effects)
     why = adding(source, pairs) if decided else None
-    tables = (ended(record), secondary(record), by_threshold(record))
+    tables = (ended(record), secondary(record))
     same = constant(record, SHOWN)
     shown_columns = [name for name in SHOWN if name not in same]
     return render(

@@ -10,7 +10,7 @@ from faultpath.analyses.map.model import MapResult
 from faultpath.analyses.model import AuditResult
 from faultpath.analyses.scan.model import ScanResult
 from faultpath.interface import Gap, Interface, rank, transitive_readers
-from faultpath.report.audit_tables import DIFFERENCE, by_condition, by_quantity, by_threshold
+from faultpath.report.audit_tables import DIFFERENCE, by_condition, by_quantity, chosen_metric
 from faultpath.report.sentences import wording
 from faultpath.report.sentences.answers import answers, would_change
 from faultpath.report.sentences.phrases import (
@@ -38,10 +38,13 @@ def decision(record: AuditResult, details: bool = False) -> RenderableType:
     success = by_quantity(record, ("baseline", "repair"))
     effects = by_condition(record, names, f"{question.repair} minus {question.baseline}")
     parts: list[RenderableType] = [Text(text.headline, style="bold")]
+    parts += _list("Found in the run", text.findings, "bold red")
+    about: list[RenderableType] = []
     if fault := wording.faults(record.facts):
-        parts += [Text(f"Fault: {fault}.", style="dim")]
+        about += [Text(f"Fault: {fault}.", style="dim")]
     if how := stopping(record):
-        parts += [Text(f"A sequential audit: {how}.")]
+        about += [Text(f"A sequential audit: {how}.")]
+    parts += [Text(""), *about] if about and text.findings else about
     parts += [Text(""), Parted(success), Text(""), Parted(effects)]
     if any(share.result.kind in ("interval", "two pieces") for share in record.break_even):
         explained = (
@@ -56,10 +59,9 @@ def decision(record: AuditResult, details: bool = False) -> RenderableType:
     trainings = () if details else for_trainings(record)
     for sentence in (*not_standing(record), *in_trials_that_ran(record), *trainings):
         parts += [Text(""), Text(sentence)]
-    table = by_threshold(record)
+    table = chosen_metric(record)
     if table is not None:
-        parts += [Text(""), drawn(table)]
-    parts += _list("Found in the run", text.findings, "bold red")
+        parts += [Text(""), Parted(table)]
     if details:
         if any(effect.mcnemar_p is not None for effect in record.effects):
             parts += [Text(""), Parted(by_condition(record, ("p", "mcnemar", "holm")))]
@@ -71,9 +73,9 @@ def decision(record: AuditResult, details: bool = False) -> RenderableType:
 def conclusion(record: MapResult | ScanResult, tables: Iterable[Table]) -> RenderableType:
     """Return headline, sentences, findings and tables of a map or a scan."""
     text = words(record)
-    parts: list[RenderableType] = [Text(text.headline, style="bold"), Text("")]
-    parts += map(Text, text.sentences)
-    parts += [Text(f"Found in the run: {finding}", style="bold red") for finding in text.findings]
+    parts: list[RenderableType] = [Text(text.headline, style="bold")]
+    parts += _list("Found in the run", text.findings, "bold red")
+    parts += [Text(""), *map(Text, text.sentences)]
     for table in tables:
         parts += [Text(""), Parted(table), *map(Text, table.notes)]
     return Group(*parts)

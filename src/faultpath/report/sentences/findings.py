@@ -23,13 +23,13 @@ from faultpath.run.findings import (
 
 
 def of_audit(record: AuditResult) -> tuple[str, ...]:
-    """Return all that was found: what is missing, what else was found, and earlier analyses."""
+    """Return all that was found: first what puts the whole result in doubt, then what is missing."""
     return (
+        *([phrases.earlier_analyses(record)] if record.earlier else ()),
+        *map(describe, record.findings),
         *_without_pairs(record),
         *_failed_trials(record),
         *_partly_measured(record),
-        *map(describe, record.findings),
-        *([phrases.earlier_analyses(record)] if record.earlier else ()),
     )
 
 

@@ -55,11 +55,15 @@ def _few_scenes(record: AuditResult) -> str:
     few = [effect for effect in leading if effect.few_differ]
     if not few:
         return ""
-    least = min(few, key=lambda effect: sum(effect.ahead))
-    at = f"{where(least.condition)} " if len(leading) > 1 else ""
-    more, less = sorted(least.ahead, reverse=True)
+    least = sorted(min(few, key=lambda effect: sum(effect.ahead)).ahead)
+    equal = [effect for effect in few if sorted(effect.ahead) == least]
+    at = f"{where(equal[0].condition)} " if len(leading) > 1 else ""
+    if len(equal) > 1:
+        at = f"under {len(equal)} of these conditions " if len(equal) < len(leading) else ""
+    less, more = least
+    scenes = counted(more, "scene") + (" each" if len(equal) > 1 else "")
     never = "never the other way" if not less else f"the other way in {less}"
-    return f" ({at}in {counted(more, 'scene')}, {never})"
+    return f" ({at}in {scenes}, {never})"
 
 
 def reversed_at(record: AuditResult) -> list[Effect]:

@@ -12,6 +12,8 @@ from faultpath.core.text import capital
 from faultpath.stats.estimate import BreakEven, Estimate
 
 MINUS = "−"
+_ROUNDING = 1e-9
+"""Below this a metric and its interval may differ from 0 by rounding alone."""
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -41,6 +43,15 @@ def with_interval(estimate: Estimate | Difference | None, digits: int = 1) -> st
     if estimate is None:
         return "–"
     return f"{signed(estimate.value, digits)} {interval(estimate, digits)}".rstrip()
+
+
+def digits_of(estimate: Estimate) -> int:
+    """Return the decimals that give two digits to the width of its interval or, without one, to
+    its value: a metric may be in metres or in thousandths."""
+    width = (estimate.high or 0.0) - (estimate.low or 0.0)
+    if width < _ROUNDING:
+        width = abs(estimate.value)
+    return max(0, 1 - math.floor(math.log10(width))) if width > _ROUNDING else 2
 
 
 def detectable(effect: Effect) -> str:
