@@ -85,7 +85,7 @@ def test_a_privileged_read_without_permission_is_found():
     ("more", "said"),
     [
         ({"variant": "blinded"}, "unknown variant 'blinded'; did you mean 'blind'?"),
-        ({"variant": "blind", "scene": "cart/1"}, "library 'selection': unknown scene 'cart/1'"),
+        ({"variant": "blind", "scene": "cart/1"}, "library 'carts': unknown scene 'cart/1'"),
     ],
 )
 def test_what_cannot_be_traced_is_refused(more, said):

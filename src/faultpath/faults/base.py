@@ -151,7 +151,9 @@ class Intervention(BaseModel, ABC):
         By default, because the numbers of a field that holds several do not fit it.
         """
         kind: str = type(self).model_fields["kind"].default
-        fields = [(name, value) for name, value in self if isinstance(value, tuple)]
+        fields: list[tuple[str, Any]] = [
+            (name, value) for name, value in self if isinstance(value, tuple)
+        ]
         labels = {self.value_field: kind}  # as fault text has it: `offset=0.1/0`
         wrong = (misfit(labels.get(name, name), value, shape) for name, value in fields)
         return next(filter(None, wrong), None)

@@ -142,9 +142,9 @@ def resolve(
         _check_readers(fault.readers, channels, interface)
         wrong = fault.intervention.misfit(interface.source(channel.sources[0]).shape)
         if wrong:
-            raise UserError(
-                f"channel '{fault.channel}': {fault.intervention.kind} does not fit: {wrong}"
-            )
+            kind = fault.intervention.kind
+            lead = "" if wrong.startswith(f"{kind} ") else f"{kind} does not fit: "
+            raise UserError(f"channel '{fault.channel}': {lead}{wrong}")
         update = {
             "readers": channel.readers,
             "intervention": fault.intervention.resolved(channel),

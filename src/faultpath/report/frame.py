@@ -67,8 +67,9 @@ def write_pages(files: Mapping[str, str], folder: Path) -> list[Path]:
     page = folder / "report.html"
     if page.is_file() and not page.is_symlink():
         check_mark(page, PAGE)
-    elif not is_run(folder):
-        if others := [name for name in files if os.path.lexists(folder / name)]:
+    else:
+        others = [name for name in files if os.path.lexists(folder / name)]
+        if others and not is_run(folder):
             raise UserError(
                 f"{folder} holds {others[0]}, which is not of this run: give a new folder."
             )
