@@ -64,7 +64,7 @@ def test_faults_of_one_cause_share_it() -> None:
         (aimed("predictor.wind_map"), "channel 'mass' and channel 'thrust': "),
         (
             [Fault(channel="wind", intervention=kinds.Offset(by=(1.0, 2.0)))],
-            "offset has 2 numbers, and the",
+            "channel 'wind': offset has 2 numbers, and the reading of one scene has 3",
         ),
     ],
 )

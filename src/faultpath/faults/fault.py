@@ -142,9 +142,9 @@ def resolve(
         _check_readers(fault.readers, channels, interface)
         reason = fault.intervention.misfit(interface.source(channel.sources[0]).shape)
         if reason:
-            raise UserError(
-                f"channel '{fault.channel}': {fault.intervention.kind} does not fit: {reason}"
-            )
+            kind = fault.intervention.kind
+            lead = "" if reason.startswith(f"{kind} ") else f"{kind} does not fit: "
+            raise UserError(f"channel '{fault.channel}': {lead}{reason}")
         update = {
             "readers": channel.readers,
             "intervention": fault.intervention.resolved(channel),
