@@ -23,7 +23,7 @@ from faultpath.run.findings import (
 
 
 def of_audit(record: AuditResult) -> tuple[str, ...]:
-    """Return all that was found: first what makes the whole result doubtful, then what is missing."""
+    """Return all that was found: first what makes the whole result doubtful, then what failed."""
     return (
         *([phrases.earlier_analyses(record)] if record.earlier else ()),
         *map(describe, record.findings),
