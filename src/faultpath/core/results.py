@@ -1,6 +1,10 @@
 """Base classes of data models; a console shows a result in one line."""
 
+from collections.abc import Mapping
+from typing import Any, Self
+
 from pydantic import BaseModel, ConfigDict
+from typing_extensions import override
 
 from faultpath.core.text import printable, shortened
 
@@ -12,6 +16,14 @@ class Frozen(BaseModel):
     """Immutable data without further fields."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
+
+    @override
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Return a copy with other fields; `TypeError` for names that are no fields, which pydantic
+        would add."""
+        if unknown := set(update or ()) - set(type(self).model_fields):
+            raise TypeError(f"{type(self).__name__} has no field {min(unknown)!r}")
+        return super().model_copy(update=update, deep=deep)
 
 
 class Shown(BaseModel):
