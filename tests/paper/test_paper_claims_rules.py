@@ -159,7 +159,8 @@ def effect(n: int, wins: int, losses: int) -> Contrast:
     """Return the tested difference of one seed with so many scenes won and lost."""
     scene = np.arange(n)
     variants = scene < wins, (scene >= wins) & (scene < wins + losses)
-    return with_test(success_effect(*variants, test="conditional"))
+    drawn = Resamples.draw("turn", n, n_resamples=10)
+    return with_test(success_effect(*variants, drawn, test="conditional"))
 
 
 N = 40
