@@ -121,7 +121,10 @@ PEEKING = odd(Guess, step=lambda self, inputs, memory: inputs.truth("true_place"
 @pytest.mark.parametrize(
     ("wrong", "said"),
     [
-        (SILENT, "'observer' reads what channel 'action' held one step before, but nobody says"),
+        (
+            SILENT,
+            "'observer' reads what channel 'action' held one step before, but no value of source",
+        ),
         (LATE, "source 'place' is the plant's: .* read 'place' at this step and keep its earlier"),
         (RING, "observer -> planner; .*reads_past"),
         (MUTE, "'observer' writes source 'guess', but at step 0"),
