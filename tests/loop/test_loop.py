@@ -123,7 +123,7 @@ PEEKING = odd(Guess, step=lambda self, inputs, memory: inputs.truth("true_place"
     [
         (
             SILENT,
-            "'observer' reads what channel 'action' held one step before, but no value of source",
+            "'observer' reads what channel 'action' held one step before, but no value",
         ),
         (LATE, "source 'place' is the plant's: .* read 'place' at this step and keep its earlier"),
         (RING, "observer -> planner; .*reads_past"),
