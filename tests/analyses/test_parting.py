@@ -101,9 +101,9 @@ CASES = {
     "reading, command, state, and how each ended": (
         heard("old", end=Status.CRASH, time_s=0.28),
         heard("new", **WIND, push=(2, 4), speedometer=(4, 9)),
-        "At 0.10 s the wind (component 2) that the pilot of new reads is 80 deg instead of 90; the "
-        "commands differ at the same time; 0.10 s later the state differs; old ended at 0.28 s "
-        "(hit the door), new at 0.30 s (success).",
+        "At 0.10 s the wind (component 2) that the pilot reads is 90 deg in old, 80 deg in new; "
+        "the commands differ at the same time; 0.10 s later the state differs; old ended at "
+        "0.28 s (hit the door), new at 0.30 s (success).",
     ),
     "never": (
         OLD,
@@ -113,40 +113,42 @@ CASES = {
     "only readings": (
         OLD,
         heard("new", **WIND),
-        "At 0.10 s the wind (component 2) that the pilot of new reads is 80 deg instead of 90; "
+        "At 0.10 s the wind (component 2) that the pilot reads is 90 deg in old, 80 deg in new; "
         "no recorded command or state differs; both ended at 0.30 s (success).",
     ),
     "a command before any reading": (
         OLD,
         without(heard("new", push=(1, 3.0001)), "observed_wind", "mass_estimate"),
-        "At 0.05 s the commands differ: push of new is 3.0001 N instead of 3; no recorded reading "
+        "At 0.05 s the commands differ: push is 3 N in old, 3.0001 N in new; no recorded reading "
         "or state differs; both ended at 0.30 s (success).",
     ),
     "what the plant measures, and what reads it": (
         without(OLD, "push"),
         heard("new", speedometer=(3, -8)),
-        "At 0.15 s the speed that the observer of new reads is −8 m/s instead of 3; the state "
-        "differs at the same time; both ended at 0.30 s (success).",
+        "At 0.15 s the speed that the observer reads is 3 m/s in old, −8 m/s in new, and most at "
+        "0.25 s: 5 m/s in old, −8 m/s in new; the state differs at the same "
+        "time; both ended at 0.30 s (success).",
     ),
     "a module of one version": (
         OLD,
         heard("bare", push=(0, 1), speedometer=(1, 5)),
-        "At 0.00 s the commands differ: push of bare is 1 N instead of 3; 0.05 s later the state "
+        "At 0.00 s the commands differ: push is 3 N in old, 1 N in bare; 0.05 s later the state "
         "differs; no recorded reading differs; both ended at 0.30 s (success). Only old has the "
         "module observer.",
     ),
     "what readers got of a fault": (
         faulted(OLD, "pilot.inverse", 1.0),
         faulted(heard("new"), "pilot.inverse", 1.5),
-        "At 0.05 s the pilot of new got 1.5 kg for mass instead of 1; no recorded command or "
-        "state differs; both ended at 0.30 s (success).",
+        "At 0.05 s the mass that the pilot got is 1 kg in old, 1.5 kg in new; no recorded command "
+        "or state differs; both ended at 0.30 s (success).",
     ),
     "one version under two conditions": (
         heard("new", "correct", Status.CRASH, 0.2),
         faulted(faulted(heard("new", push=(3, 6)), "observer.model", 1.0), "pilot.inverse", 1.0),
-        "At 0.05 s, under the shared fault, the observer got 1 kg for mass instead of 2 (and 1 "
-        "more); 0.10 s later the commands differ; no recorded state differs; it ended at 0.20 s "
-        "(hit the door) under correct inputs, at 0.30 s (success) under the shared fault.",
+        "At 0.05 s the mass that the observer got is 2 kg under correct inputs, 1 kg under the "
+        "shared fault (and 1 more reading differs); 0.10 s later the commands differ; no recorded "
+        "state differs; it ended at 0.20 s (hit the door) under correct inputs, at "
+        "0.30 s (success) under the shared fault.",
     ),
     "nothing in common": (
         replace(OLD, signals=()),
@@ -224,5 +226,5 @@ def test_positions_are_the_state_of_trials_without_signals() -> None:
     told = parting(shown(), moved("old", 1.0), moved("new", 1.5))
     assert told.compared == ("state",)
     assert parted(FACTS, told).startswith(
-        "At 0.05 s the state differs: position (component 2) of new is 1.5 m instead of 1;"
+        "At 0.05 s the state differs: position (component 2) is 1 m in old, 1.5 m in new;"
     )

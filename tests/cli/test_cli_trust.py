@@ -67,7 +67,7 @@ def test_a_file_is_imported_where_a_person_names_it_too_or_trusts_all() -> None:
     before = list(sys.path)
     for code in ((), ("--code", "other.py"), ("--code", "mine.py:other")):
         said = faultpath("replay", "run", *code).refused("record.json names mine.py:create")
-        assert "--code, or give --trust" in said
+        assert "run the command with --code mine.py:create, or give --trust" in said
         assert not Path("imported").exists()
     assert sys.path == before
     for code in (("--code", "mine.py"), ("--code", "mine.py:create"), ("--trust",)):

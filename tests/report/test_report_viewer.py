@@ -145,5 +145,13 @@ def test_the_player_says_where_recorded_trials_part(one_seed: ReportInput) -> No
     }
     assert set(told) == {(scene, "shared")}
     parting = told[scene, "shared"]
-    assert "the wind that the predictor of gru-dcc reads is 1 m/s instead of 0" in parting["said"]
+    assert "the wind that the predictor reads is 0 m/s in gru, 1 m/s in gru-dcc" in parting["said"]
     assert [1, "readings differ"] in parting["marks"]
+
+
+def test_the_player_names_only_what_is_drawn(one_seed: ReportInput) -> None:
+    drawn = "From above, to scale: the dot is the start, the ring the goal."
+    bare = replace(one_seed, system=one_seed.system.model_copy(update={"plans": {}}))
+    assert drawn in report_page(one_seed)
+    assert drawn not in report_page(bare)
+    assert "Positions to scale" in report_page(bare)

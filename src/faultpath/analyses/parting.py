@@ -63,6 +63,8 @@ class Difference(Frozen, allow_inf_nan=False):
     values: tuple[float, float]
     others: int = Field(0, ge=0)
     """How many more of its kind differ at that step."""
+    most: tuple[float, tuple[float, float]] | None = None
+    """When its values differ most, and both there; `None` where that is at this step."""
 
 
 class Parting(Frozen):
@@ -101,12 +103,16 @@ class _Series:
     unit: str = ""
     parts: tuple[str, ...] = ()
 
+    def common(self) -> tuple[Values, Values]:
+        """Return the values of both at the steps that both have."""
+        steps = min(len(self.one), len(self.other))
+        return self.one[:steps].astype(np.float64), self.other[:steps].astype(np.float64)
+
     def differs(self) -> tuple[int, int] | None:
         """Return the first step at which both are known and differ, and the component that does
         so most; `None` where they are equal."""
-        steps = min(len(self.one), len(self.other))
         with np.errstate(invalid="ignore"):
-            apart = np.abs(self.one[:steps].astype(np.float64) - self.other[:steps])
+            apart = np.abs(np.subtract(*self.common()))
         apart = np.nan_to_num(apart, nan=0.0, posinf=0.0)
         differing = np.flatnonzero(apart.any(axis=1))
         return (int(differing[0]), int(apart[differing[0]].argmax())) if differing.size else None
@@ -159,6 +165,10 @@ def _first(series: Iterable[_Series], dt_s: float) -> Difference | None:
         return None
     (step, component), first = min(differing, key=lambda pair: pair[0][0])
     values = float(first.one[step, component]), float(first.other[step, component])
+    with np.errstate(invalid="ignore"):
+        apart = np.abs(np.subtract(*(values[:, component] for values in first.common())))
+    last = int(np.nan_to_num(apart, nan=0.0, posinf=0.0).argmax())
+    most = float(first.one[last, component]), float(first.other[last, component])
     many = first.one.shape[1] > 1
     units = first.unit.split(", ")
     if len(units) != first.one.shape[1]:  # one unit for all, or nobody knows which is whose
@@ -174,6 +184,7 @@ def _first(series: Iterable[_Series], dt_s: float) -> Difference | None:
         part=first.parts[component] if first.parts and many else "",
         values=values,
         others=sum(at[0] == step for at, _ in differing) - 1,
+        most=None if last == step else (round(last * dt_s, 9), most),
     )
 
 

@@ -2,6 +2,7 @@
 
 import os
 import re
+import shlex
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -173,7 +174,8 @@ def check_named(
     if unnamed and not trusted:
         raise UserError(
             f"{file} names {', '.join(unnamed)}, and importing that runs it: look at it first, "
-            "then name it too, with --code, or give --trust"
+            f"then run the command with {' '.join(f'--code {shlex.quote(of)}' for of in unnamed)}, "
+            "or give --trust"
         )
 
 

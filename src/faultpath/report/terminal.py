@@ -10,7 +10,8 @@ from faultpath.analyses.map.model import MapResult
 from faultpath.analyses.model import AuditResult
 from faultpath.analyses.scan.model import ScanResult
 from faultpath.interface import Gap, Interface, rank, transitive_readers
-from faultpath.report.audit_tables import DIFFERENCE, by_condition, by_quantity, chosen_metric
+from faultpath.report.audit_tables import DIFFERENCE, by_condition, by_quantity
+from faultpath.report.secondary import chosen_metric
 from faultpath.report.sentences import wording
 from faultpath.report.sentences.answers import answers, would_change
 from faultpath.report.sentences.phrases import (

@@ -39,12 +39,15 @@ class Viewer:
     """Parts of the viewer that a page needs beside its script."""
 
     space: str
-    """`space`: trials are drawn from above; `picture`: as the system renders them; `line`: their
-    positions lie on one axis and are plotted over time; `none`: the system gives neither."""
+    """`space`: positions are drawn to scale, from above where there are floor plans; `picture`: as
+    the system renders them; `line`: they lie on one axis and are plotted over time; `none`: the
+    system gives neither."""
     shown: frozenset[tuple[str, int]]
     """Scenes and seeds that can be looked at."""
     whole: bool
     """Whether these are all that ran."""
+    plans: bool
+    """Whether scenes have a floor plan, with start and goal."""
     packed: str
     """All else, for the script."""
 
@@ -89,7 +92,7 @@ def viewer_data(source: ReportInput, pairs: Sequence[Pair]) -> Viewer | None:
         "ran": len(every),
     }
     whole = len(groups) == len(every)
-    return Viewer(space, frozenset(groups), whole, pack(content, trials.series))
+    return Viewer(space, frozenset(groups), whole, bool(drawn), pack(content, trials.series))
 
 
 def captions(pairs: Sequence[Pair], sampled: bool = False) -> dict[tuple[str, int], str]:

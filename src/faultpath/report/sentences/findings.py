@@ -23,7 +23,7 @@ from faultpath.run.findings import (
 
 
 def of_audit(record: AuditResult) -> tuple[str, ...]:
-    """Return all that was found: first what makes the whole result doubtful, then what failed."""
+    """Return all that was found: what puts all of it in doubt first, then what is missing."""
     return (
         *([phrases.earlier_analyses(record)] if record.earlier else ()),
         *map(describe, record.findings),

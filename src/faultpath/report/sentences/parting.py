@@ -3,7 +3,7 @@
 from faultpath.analyses.facts import ComparisonFacts
 from faultpath.analyses.model import where
 from faultpath.analyses.parting import Difference, Ended, Kind, Parting
-from faultpath.core.text import capital, one_line, series
+from faultpath.core.text import capital, counted, one_line, series
 from faultpath.report.sentences.wording import MINUS, ended, in_words, unit
 from faultpath.system.outcome import control_steps
 
@@ -13,6 +13,7 @@ DIFFERS: dict[Kind, str] = {
     "state": "state differs",
 }
 """What differs, in two words."""
+_NOUN: dict[Kind, str] = {"reading": "reading", "command": "command", "state": "quantity"}
 _LEAST, _MOST = 3, 17
 """Digits of the two values: so few that they still look different."""
 
@@ -73,24 +74,34 @@ def _differences(one: Ended, other: Ended, parting: Parting) -> list[str]:
 
 
 def _beginning(kind: Kind, at: Difference, one: Ended, other: Ended) -> str:
-    """Return the clause on the first difference of all, with both values."""
-    values, unit_of = _values(at), "" if at.unit in ("", "1") else f" {unit(at.unit)}"
-    old, new = values
+    """Return the clause on the first difference of all, with both values, there and where they
+    differ most."""
     name = in_words(at.name)
     if at.component is not None:
         name += f" ({at.part or f'component {at.component}'})"
-    of, under = f" of {other.variant}", ""
-    if one.variant == other.variant:
-        of, under = "", f", {where(other.condition)},"
-    more = f" (and {at.others} more)" if at.others else ""
-    begin = f"at {_time(at.time_s)} s{under}"
+    begin = f"at {_time(at.time_s)} s the"
     if kind == "reading":
-        readers = f"the {series([*map(in_words, at.modules)])}{of}"
-        if at.delivered:
-            return f"{begin} {readers} got {new}{unit_of} for {name} instead of {old}{more}"
-        verb = "reads" if len(at.modules) == 1 else "read"
-        return f"{begin} the {name} that {readers} {verb} is {new}{unit_of} instead of {old}{more}"
-    return f"{begin} the {DIFFERS[kind]}: {name}{of} is {new}{unit_of} instead of {old}{more}"
+        verb = "got" if at.delivered else "reads" if len(at.modules) == 1 else "read"
+        what = f"{begin} {name} that the {series([*map(in_words, at.modules)])} {verb}"
+    else:
+        what = f"{begin} {DIFFERS[kind]}: {name}"
+    of_unit = "" if at.unit in ("", "1") else f" {unit(at.unit)}"
+    text = f"{what} is {_both(at.values, of_unit, one, other)}"
+    if at.others:
+        text += f" (and {counted(at.others, 'more ' + _NOUN[kind])} differ{'s' * (at.others == 1)})"
+    if at.most is not None:
+        time_s, values = at.most
+        text += f", and most at {_time(time_s)} s: {_both(values, of_unit, one, other)}"
+    return text
+
+
+def _both(values: tuple[float, float], of_unit: str, one: Ended, other: Ended) -> str:
+    """Return `3 m in old, 4 m in new`: neither is the right one."""
+    places = f"in {one.variant}", f"in {other.variant}"
+    if one.variant == other.variant:
+        places = where(one.condition), where(other.condition)
+    texts = _apart(values)
+    return ", ".join(f"{text}{of_unit} {at}" for text, at in zip(texts, places, strict=True))
 
 
 def _ends(facts: ComparisonFacts, one: Ended, other: Ended) -> str:
@@ -117,13 +128,13 @@ def _alone(one: Ended, other: Ended, parting: Parting) -> str:
     )
 
 
-def _values(at: Difference) -> tuple[str, str]:
+def _apart(values: tuple[float, float]) -> tuple[str, str]:
     """Return both values with the fewest digits with which they differ."""
     for digits in range(_LEAST, _MOST):
-        one, other = (f"{value:.{digits}g}".replace("-", MINUS) for value in at.values)
+        one, other = (f"{value:.{digits}g}".replace("-", MINUS) for value in values)
         if one != other:
             return one, other
-    return repr(at.values[0]), repr(at.values[1])
+    return repr(values[0]), repr(values[1])
 
 
 def _time(seconds: float) -> str:

@@ -58,7 +58,7 @@ if (document.getElementById("viewer-data")) {
     // Both trials of a pair from above: baseline dashed, what is still to come pale.
     const drawPlan = (host, title, pair) => {
       const { svg, w, h } = picture(host, title), plan = data.plans[current().scene], [[x0, x1], [y0, y1]] = state.box;
-      const edge = data.space === "picture" ? 60 : 12; // the scale lies under a picture
+      const edge = plan && data.space !== "picture" ? 12 : 60; // without walls, signs and the scale need room
       const scale = Math.min((w - edge) / (x1 - x0 || 1), (h - edge) / (y1 - y0 || 1));
       const at = ([x, y]) => [w / 2 + (x - (x0 + x1) / 2) * scale, h / 2 - (y - (y0 + y1) / 2) * scale];
       const join = (points) => points.map((p) => at(p).map((v) => v.toFixed(1)).join(",")).join(" ");
@@ -195,7 +195,7 @@ if (document.getElementById("viewer-data")) {
         const pair = current().pairs.find((each) => each.condition === condition);
         if (!pair) continue;
         plan.hidden = state.box[0][0] > state.box[0][1];
-        if (spatial && !plan.hidden) drawPlan(plan, `${title}, from above. ${said.textContent}`, pair);
+        if (spatial && !plan.hidden) drawPlan(plan, `${title}${data.plans[current().scene] ? ", from above" : ""}. ${said.textContent}`, pair);
         drawPlot(plot, `${data.plots[state.plot]?.title}, ${title}`, pair);
       }
       get("clock").textContent = `${(state.step * dt).toFixed(2)} s`;
