@@ -145,7 +145,6 @@ def test_a_file_is_no_folder_for_a_run(command: str, tmp_path: Path) -> None:
 QUESTIONS = COMMANDS | {
     "scan of another error": [*COMMANDS["scan"], "--fault", "velocity:offset=0.1"],
     "scan with another seed": [*COMMANDS["scan"], "--seeds", "1"],
-    "judge of one condition": [*COMMANDS["judge"], "--fault", "fog"],
 }
 
 
@@ -156,7 +155,6 @@ QUESTIONS = COMMANDS | {
         ("map", "audit"),
         ("scan", "scan of another error"),
         ("scan", "scan with another seed"),
-        ("judge", "judge of one condition"),
     ],
 )
 def test_a_run_does_not_go_on_in_one_of_another_question(first: str, second: str) -> None:
