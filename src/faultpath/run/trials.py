@@ -26,7 +26,7 @@ _MOST_CELLS, _MOST_EMPTY = 10_000_000, 50
 file of few trials cannot ask for all memory."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Trial:
     """One trial and where it stands in the plan."""
 

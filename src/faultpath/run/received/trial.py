@@ -1,6 +1,7 @@
 """One trial as another tool wrote it: from cells to what ended how."""
 
 import math
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -17,7 +18,7 @@ _TRUTH = {"true": True, "yes": True, "false": False, "no": False}
 NO_OUTCOME = "the results give no outcome"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Received:
     """One trial."""
 
@@ -55,7 +56,7 @@ class ResultsFile:
                 f"{where}: the file says {name} '{cell}' and the command line '{label}': leave one "
                 f"of them out, or name another column with --column {name}=NAME."
             )
-        return label or cell
+        return sys.intern(label or cell)  # one text for all of its trials
 
 
 def received(
