@@ -118,8 +118,8 @@ class ScanAnalysis(Analysis[Scanned]):
 
     def at_most(self) -> int:
         """Return about how many trials there will be at most, with those of halved sizes."""
-        halved = self.per_scene * HALVINGS * len(self.errors) * len(self.first)
-        most = self.trials(len(self.others)) + halved
+        most = self.trials(len(self.others))
+        most += self.per_scene * HALVINGS * len(self.errors) * len(self.first)
         return most if self.question.scenes is not None else min(TRIALS, most)
 
     def trials(self, second: int) -> int:
@@ -199,9 +199,8 @@ class ScanAnalysis(Analysis[Scanned]):
                 rows += self._rows([scanned.errors[place] for place in places], scanned.second)
             scenes += scanned.second
         # Rounds of one scan share a folder, and those of another question must not.
-        seeds = ",".join(map(str, self.question.seeds))
         return Plan(
-            name=f"{'-'.join(self.named[:-1])}-seeds-{seeds}",
+            name=f"{'-'.join(self.named[:-1])}-seeds-{self.question.seeds}",
             system=self.spec,
             library=self.facts.library,
             scenes=scenes,
