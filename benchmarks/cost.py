@@ -109,7 +109,7 @@ def _in_folder(run: Callable[[Path], object]) -> bytes:
         return (Path(name) / "run" / "outcomes.parquet").read_bytes()
 
 
-def judged() -> Side:
+def judged(scenes: int = JUDGED) -> Side:
     """`judge` of a CSV file with a row a trial: two versions, four conditions; with its report."""
     folder = TemporaryDirectory()
     results, draws = Path(folder.name) / "results.csv", generator("benchmark-judge", "all", 0)
@@ -119,7 +119,7 @@ def judged() -> Side:
         rows.writerow(("variant", "condition", "scene", "success"))
         for condition, alike in (conditions | {SHARED: SHARED}).items():
             for variant, rate in zip(("repair", "baseline"), SUCCESS[alike], strict=True):
-                ends = draws.random(JUDGED) < rate
+                ends = draws.random(scenes) < rate
                 rows.writerows((variant, condition, i, int(end)) for i, end in enumerate(ends))
 
     def work() -> None:
@@ -135,6 +135,11 @@ def judged() -> Side:
         )
 
     return Side(work)
+
+
+def judged_many() -> Side:
+    """The same with ten times as many trials: what it costs has to grow as they do."""
+    return judged(10 * JUDGED)
 
 
 def many_scenes() -> Side:

@@ -44,10 +44,11 @@ SIDES: Mapping[str, tuple[str, Mapping[str, str]]] = {
     "audit": ("benchmarks.cost:arm_audit", {}),
     "bare loop": ("benchmarks.cost:bare_trials", {}),
     "judge": ("benchmarks.cost:judged", {}),
+    "judge of 800,000": ("benchmarks.cost:judged_many", {}),
     "audit of 10,000 scenes": ("benchmarks.cost:many_scenes", {}),
 }
 """Function that builds each side, as `module:function`, and its environment."""
-ONCE = {"judge", "audit of 10,000 scenes"}
+ONCE = {"judge", "judge of 800,000", "audit of 10,000 scenes"}
 """Sides that take seconds: a round times them once, and their memory is told."""
 ELSEWHERE = {"jax-mppi": ".venv-bench-jax/bin/python"}
 """Pythons of the sides that need one of their own; they get the problem as a file."""
@@ -90,5 +91,6 @@ ROWS = (
     Row("Loop, one scene at a time", LOOP_STEPS, "one scene", "bare loop, one scene"),
     Row("Audit of 20 scenes, with its report", "trials/s", "audit", "bare loop"),
     Row("judge of 80,000 trials, with its report", "s", "judge", target=_at_most(4.0)),
+    Row("judge of 800,000 trials, with its report", "s", "judge of 800,000", target=_at_most(25.0)),
     Row("Audit of 10,000 scenes, with its report", "s", "audit of 10,000 scenes"),
 )

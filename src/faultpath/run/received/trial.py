@@ -14,7 +14,7 @@ from faultpath.system.declared import check_name, shown
 from faultpath.system.outcome import Status
 
 _ENDS = {status.value: status for status in Status}
-_TRUTH = {"true": True, "yes": True, "false": False, "no": False}
+_TRUTH = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}
 NO_OUTCOME = "the results give no outcome"
 
 
@@ -110,11 +110,13 @@ def received(
 
 def _text(cell: object, what: str) -> str:
     """Return a name: `3` for 3.0 too, which is how a column of whole numbers with a gap is read."""
+    if isinstance(cell, str):
+        return cell.strip()
     if isinstance(cell, float) and cell.is_integer():
         cell = int(cell)
     if isinstance(cell, list | dict | bytes):
         raise UserError(f"{what} is {shown(cell)}: give a word or a number.")
-    return "" if cell is None or cell != cell else str(cell).strip()
+    return "" if cell is None or cell != cell else str(cell)
 
 
 def _number(cell: object, what: str) -> float | None:
