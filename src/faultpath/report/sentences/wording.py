@@ -130,6 +130,11 @@ def sentence(words: str) -> str:
     return f"{capital(words).removesuffix('.')}."
 
 
+def seeds_run(facts: ComparisonFacts) -> str:
+    """Return `, seeds 0, 1`; nothing for results of other tools that name no seed but 0."""
+    return "" if facts.judged and facts.seeds == (0,) else f", {seeds(facts.seeds)}"
+
+
 def seeds(values: tuple[int, ...]) -> str:
     """Return `seed 0` or `seeds 0, 1, 2`."""
     return f"seed{'s' if len(values) > 1 else ''} {', '.join(map(str, values))}"
