@@ -103,6 +103,7 @@ def test_the_command_prints_and_exits_with_what_was_found():
     assert "What ran is what is declared." in ended.out
     lines = ended.out.splitlines()
     assert max(len(each) for each in lines) <= 80
+    assert "no gap" not in ended.out
     (reached,) = (line for line in lines if line.startswith("controller.inverse") and "by" in line)
     assert "gain scaled by 0.6 gain_estimate 0 1 2 0 1 2" in " ".join(reached.split())
     ended = faultpath("trace", BROKEN, "--broken", "nosy", "--json")
