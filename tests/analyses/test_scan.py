@@ -12,6 +12,7 @@ from faultpath.analyses.scan.analysis import COSTLY_PP, FIRST_SCENES, HALVINGS, 
 from faultpath.analyses.scan.model import ScanResult
 from faultpath.analyses.scan.ranking import PROBED_SCENES
 from faultpath.core.errors import UserError
+from faultpath.report.scan import every_table, tables
 from faultpath.report.sentences.words import words
 from faultpath.stats.cancelling import LEVEL, MOST, REGAINED
 from faultpath.stats.estimate import ALPHA
@@ -75,6 +76,29 @@ def test_what_is_said_is_what_was_approved(name: str, approved):
             (words(record).headline, "", *words(record).sentences, "", *words(record).commands)
         ),
     )
+
+
+@pytest.mark.parametrize(("scenes", "few"), [(60, True), (400, False)])
+def test_that_few_scenes_are_left_for_pairs_is_said(scenes: int, few: bool):
+    record, *_ = scanned(Planted(both("one.a", "two.b"), ("a", "b"), scenes))
+    said = [text for text in words(record).sentences if "may cancel as well" in text]
+    assert [text.partition(" only")[0] for text in said] == ["In 10 scenes"] * few
+
+
+def test_few_pairs_stand_in_the_terminal_and_words_say_what_is_bold():
+    record, *_ = scanned(Planted(both("one.a", "two.b"), ("a", "b")))
+    for shown in (tables(record), every_table(record)):
+        (pairs,) = (table for table in shown if table.name == "every-pair")
+        asides = [entry.aside for line in pairs.lines for entry in line.entries if entry.detected]
+        assert asides == ["listed"] * len(record.versions[0].listed) != []
+    alone = tables(record)[0]
+    bold = {e.aside for line in alone.lines for e in line.entries if e.detected}
+    assert bold == {"costs"}
+    (version,) = record.versions
+    many = version.model_copy(update={"pairs": version.pairs * 4})
+    crowd = record.model_copy(update={"versions": (many,)})
+    assert "every-pair" not in [table.name for table in tables(crowd)]
+    assert "every-pair" in [table.name for table in every_table(crowd)]
 
 
 def test_an_error_that_raises_success_goes_no_further():

@@ -193,6 +193,23 @@ def test_a_cart_has_its_goal(
     opened.close()
 
 
+def test_signs_at_the_ends_of_positions_without_a_plan_are_whole(
+    one_seed: ReportInput, browser: Browser, tmp_path: Path
+) -> None:
+    system = one_seed.system.model_copy(update={"plans": {}})
+    opened = browser.new_page(viewport={"width": 1280, "height": 900})
+    opened.goto(write_report(replace(one_seed, system=system), tmp_path)[0].as_uri())
+    opened.wait_for_selector("#viewer[data-ready]")
+    room = opened.evaluate(
+        """() => [...document.querySelectorAll("#viewer-across .plan .v-end")].flatMap((sign) => {
+          const [a, b] = [sign, sign.closest(".plan")].map((e) => e.getBoundingClientRect());
+          return [a.left - b.left, b.right - a.right, a.top - b.top, b.bottom - a.bottom];
+        })"""
+    )
+    assert min(room) > 3, "half of the line around a sign"
+    opened.close()
+
+
 def test_a_picture_moves_with_the_clock_and_lifts_its_pen(
     make: Callable[..., ReportInput], browser: Browser, tmp_path: Path
 ) -> None:

@@ -9,9 +9,11 @@ from rich.console import Console
 
 from faultpath.analyses.facts import EarlierAnalysis
 from faultpath.analyses.model import AuditResult
+from faultpath.faults import parse_fault
 from faultpath.report.audit_tables import by_condition, decided_for, markdown_table
 from faultpath.report.html import _finding, report_page, write_report
 from faultpath.report.inputs import ReportInput
+from faultpath.report.sentences.wording import faults, seeds_run
 from faultpath.report.terminal import decision
 
 
@@ -39,6 +41,41 @@ def test_findings_stand_below_the_headline_doubts_first(one_seed: ReportInput) -
     for text in (captured.get(), page[page.index("<h1") :]):
         marks = ("Do not choose", "Found in the run", "concluded before", "1 trial of", "80.0")
         assert list(map(text.index, marks)) == sorted(map(text.index, marks))
+
+
+def test_details_say_everything_once(one_seed: ReportInput) -> None:
+    undetected = one_seed.record.effects[-1].model_copy(update={"sign": 0, "corrected_p": 0.25})
+    effects = (*one_seed.record.effects[:-1], undetected)
+    record = one_seed.record.model_copy(update={"effects": effects})
+    console = Console(width=400)
+    with console.capture() as captured:
+        console.print(decision(record, details=True))
+    said = [line.strip() for line in captured.get().splitlines() if len(line.split()) > 9]
+    assert len(said) == len(set(said))
+    assert captured.get().count("the interval excludes 0, but") == 1
+
+
+@pytest.mark.parametrize(
+    ("fault", "words"),
+    [
+        ("mass:offset=0.02", "mass offset by 0.02 (kg)"),
+        ("mass:scale=1.1", "mass scaled by 1.1"),
+        ("thrust_scale:offset=0.1", "thrust_scale offset by 0.1"),
+    ],
+)
+def test_what_a_fault_adds_has_the_unit_of_its_channel(one_seed: ReportInput, fault, words) -> None:
+    read = parse_fault(fault, one_seed.system.interface, {}, 0.05)
+    facts = one_seed.record.facts.model_copy(update={"faults": read})
+    assert faults(facts) == words.removesuffix(" (kg)")
+    source = replace(one_seed, record=one_seed.record.model_copy(update={"facts": facts}))
+    assert f"<dd>{words}</dd>" in report_page(source)
+
+
+def test_results_of_other_tools_show_no_seed_that_they_do_not_name(one_seed: ReportInput) -> None:
+    facts = one_seed.record.facts.model_copy(update={"pairing": "keys"})
+    for seeds, text in (((0,), ""), ((0, 1), ", seeds 0, 1"), ((3,), ", seed 3")):
+        assert seeds_run(facts.model_copy(update={"seeds": seeds})) == text
+    assert seeds_run(one_seed.record.facts) == ", seed 0"
 
 
 def test_the_terminal_takes_names_literally(one_seed: ReportInput) -> None:

@@ -54,6 +54,14 @@ def test_names_are_shown_literally() -> None:
     )
 
 
+def test_words_may_break_in_a_page_but_no_number_from_its_unit() -> None:
+    columns = ("Estimate", "Ahead")
+    table = Table(columns=columns, words=("Ahead",), lines=(line("x", "5.0", "from 75 % on"),))
+    page = html(table)
+    assert '<th scope="col">Estimate</th><th scope="col" class="word">Ahead</th>' in page
+    assert '<td class="word"><span class="ours">from 75\N{NO-BREAK SPACE}% on</span></td>' in page
+
+
 def test_a_narrow_terminal_cuts_words_but_no_number() -> None:
     claim = line("C01", "+57.3 pp [48.3, 66.3]", "word " * 40)
     columns = ("Estimate", "Words")

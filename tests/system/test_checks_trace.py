@@ -40,7 +40,10 @@ def test_a_run_of_ones_own_is_traced_and_a_fault_shows_whom_it_reaches():
     _, found = trace(DOCK, "ranges", "range:scale=0.7@speedometer", library="floors")
     altered = {read.reader: read.altered_by for read in found.reads if read.altered_by}
     assert altered == {"speedometer.difference": ("scaled by 0.7",)}
-    (speed,) = (line for line in trace_table(found).lines if line.label == "approach.feedback")
+    table = trace_table(found)
+    assert table.columns[3:5] == ("at steps", "of steps")
+    assert table.notes[0].startswith("At steps: ")
+    (speed,) = (line for line in table.lines if line.label == "approach.feedback")
     assert [entry.text for entry in speed.entries] == [
         *("speed", "", "range_rate", "0 1 2", "0 1 2", "speedometer")
     ]
@@ -105,6 +108,7 @@ def test_the_command_prints_and_exits_with_what_was_found():
     assert "What ran is what is declared." in ended.out
     lines = ended.out.splitlines()
     assert max(len(each) for each in lines) <= 80
+    assert "no gap" not in ended.out
     (reached,) = (line for line in lines if line.startswith("controller.inverse") and "by" in line)
     assert "gain scaled by 0.6 gain_estimate 0 1 2 0 1 2" in " ".join(reached.split())
     ended = faultpath("trace", BROKEN, "--broken", "nosy", "--json")

@@ -156,7 +156,7 @@ def whole_table(record: AuditResult) -> Table:
     if facts.judged:
         under = f", {question.fault}" if question.fault else ""
         what, scenes = f"{question.repair} against {question.baseline}{under}", f"{facts.unit}s"
-    title = f"{what}: {phrases.scenes_run(record)} {scenes}, {wording.seeds(facts.seeds)}"
+    title = f"{what}: {phrases.scenes_run(record)} {scenes}{wording.seeds_run(facts)}"
     hypotheses, sets = record.testing.hypotheses, len(record.break_evens)
     corrected = f"Holm's correction is for {hypotheses} contrasts."
     if sets > 1:

@@ -22,7 +22,7 @@ from faultpath.core.files.atomic import check_mark, is_run, make_folder, write_t
 from faultpath.core.text import counted
 from faultpath.core.version import __version__
 from faultpath.report.sentences import wording
-from faultpath.report.tables.escapes import visible
+from faultpath.report.tables.escapes import unbroken, visible
 
 PAGE = b'<meta name="generator" content="faultpath '
 """Text in the head of every page."""
@@ -93,7 +93,7 @@ def _environment(package: str) -> tuple[Environment, ChoiceLoader]:
 def whole(text: str, names: Sequence[str]) -> Markup:
     """Return text in which no line breaks inside one of the short `names` of variants, nor between
     a number and its unit."""
-    text = re.sub(r"(?<=\d) (?=%|pp\b)", "\N{NO-BREAK SPACE}", text)
+    text = unbroken(text)
     short = sorted((name for name in names if 0 < len(name) <= _SHORT), key=len, reverse=True)
     if not short:
         return escape(visible(text))

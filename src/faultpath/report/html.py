@@ -76,7 +76,7 @@ def report_page(source: ReportInput) -> str:
         numbers=Markup(html(by_condition(record, shown_columns, "Effects; bold is significant"))),
         same=" ".join(filter(None, (*same.values(), median_time(record)))),
         tests=phrases.tests(record),
-        fault=wording.faults(facts) or question.fault or "As the system defines it.",
+        fault=_fault(source),
         variants=list(zip(("baseline", "repair"), source.system.variants, strict=True)),
         forks=[Markup(fork_panel(fork)) for fork in forks(source)],
         frequency=[(Markup(picture), words) for picture, words in frequency_panels(record)],
@@ -102,6 +102,13 @@ def report_page(source: ReportInput) -> str:
         outcomes=[(table.title, Markup(html(table))) for table in filter(None, tables)],
         viewer=viewer,
     )
+
+
+def _fault(source: ReportInput) -> str:
+    interface = source.system.interface
+    units = {of.name: interface.source(of.sources[0]).unit for of in interface.channels}
+    facts, asked = source.record.facts, source.record.question.fault
+    return wording.faults(facts, units) or str(asked or "As the system defines it.")
 
 
 def write_report(source: ReportInput, folder: Path) -> list[Path]:

@@ -17,17 +17,24 @@ from faultpath.report.tables.html import html
 from faultpath.report.tables.markdown import blocks
 from faultpath.run.provenance import RunProvenance
 
+_MOST_PAIRS = 10
+"""As many pairs have room in a terminal."""
+
 
 def tables(record: ScanResult) -> tuple[Table, ...]:
-    """Return the errors alone, those of a source at several readers, and the ranking."""
+    """Return the errors alone, their pairs where these are few, those of a source at several
+    readers, and the ranking."""
     together = (_together(record),) if record.versions[0].together else ()
-    return _alone(record), *together, ranking_table(record.ranking)
+    pairs = _pairs(record) if 0 < len(record.versions[0].pairs) <= _MOST_PAIRS else None
+    tables = _alone(record), pairs, *together, ranking_table(record.ranking)
+    return tuple(filter(None, tables))
 
 
 def every_table(record: ScanResult) -> tuple[Table, ...]:
     """Return these, and beside them the pairs that ran: too many for a terminal."""
     first, *others = tables(record)
-    return first, *((_pairs(record),) if record.versions[0].pairs else ()), *others
+    many = len(record.versions[0].pairs) > _MOST_PAIRS
+    return first, *((_pairs(record),) if many else ()), *others
 
 
 def _pairs(record: ScanResult) -> Table:
@@ -41,7 +48,8 @@ def _pairs(record: ScanResult) -> Table:
             rates = (one.none, one.first, one.second, one.both)
             entries += [Entry(text=_percent(rate)) for rate in rates]
             shown = "not tested" if p is None else wording.p_value(p)
-            entries.append(Entry(text=shown, detected=one.kind is not None))
+            listed = one.kind is not None
+            entries.append(Entry(text=shown, detected=listed, aside="listed" * listed))
         lines.append(line(" and ".join(named(record.errors[e]) for e in pair.errors), *entries))
     return Table(
         name="every-pair",
@@ -51,7 +59,7 @@ def _pairs(record: ScanResult) -> Table:
         lines=tuple(lines),
         notes=(
             "p: one-sided, that both together succeed more often than the worse one alone; tested "
-            "where each of them costs success, or in one source. Bold: listed.",
+            "where each of them costs success, or in one source.",
         ),
     )
 
@@ -83,8 +91,8 @@ def _alone(record: ScanResult) -> Table:
         lines=tuple(lines),
         notes=(
             f"The first stage has {counted(record.scenes[0], 'scene')}, the second "
-            f"{record.scenes[1]} others. p: one-sided, that the error costs success, or raises it "
-            "where it is bold and above no error; bold below 0.025.",
+            f"{record.scenes[1]} others. p: one-sided, that the error costs success or, where it "
+            "is said to raise it, that it does (below 0.025).",
         ),
     )
 
@@ -97,7 +105,8 @@ def _second(single: SecondStage | None) -> tuple[Entry, Entry]:
     if single is None:
         return Entry(text="not run"), Entry(text="")
     p = single.helps_p if single.kind == "helps" else single.corrected_p
-    text = Entry(text=_percent(single.alone), detected=single.kind is not None)
+    effect = {"hurts": "costs", "helps": "raises"}.get(single.kind or "", "")
+    text = Entry(text=_percent(single.alone), detected=bool(effect), aside=effect)
     return text, Entry(text=wording.p_value(p))
 
 

@@ -57,8 +57,9 @@ def decision(record: AuditResult, details: bool = False) -> RenderableType:
     plain = answers(record)
     if not details and (follows := plain.get("Left open" if record.invalid else "What follows")):
         parts += [Text(""), Text(follows)]
-    trainings = () if details else for_trainings(record)
-    for sentence in (*not_standing(record), *in_trials_that_ran(record), *trainings):
+    # Among all sentences these stand anyway.
+    caveats = (*not_standing(record), *in_trials_that_ran(record), *for_trainings(record))
+    for sentence in () if details else caveats:
         parts += [Text(""), Text(sentence)]
     table = chosen_metric(record)
     if table is not None:
@@ -97,9 +98,9 @@ def interface_table(interface: Interface) -> RenderableType:
         sources = (f"{name} {interface.source(name).provenance.value}" for name in channel.sources)
         reached = set(transitive_readers(interface, channel.name)) - set(channel.readers)
         readers = (*channel.readers, *(f"reaches {name}" for name in sorted(reached)))
-        gap = "no" if channel.gap is Gap.NONE else channel.gap.value
+        gap = "" if channel.gap is Gap.NONE else f"{channel.gap.value} gap"
         entries = ("\n".join(sources), "\n".join(readers))
-        lines.append(line(channel.name, *entries, aside=f"{gap} gap"))
+        lines.append(line(channel.name, *entries, aside=gap))
     columns = ("fed by", "read by")
     table = Table(
         title=f"Information interface of {interface.name}",
@@ -137,8 +138,12 @@ def trace_table(trace: TraceReport) -> Table:
         columns=tuple(columns),
         words=tuple(columns),
         lines=tuple(lines),
-        notes=tuple(
-            f"{source} is reconstructed by {module} from {', '.join(channels) or 'nothing'}."
-            for source, (module, channels) in trace.reconstructed.items()
+        notes=(
+            "At steps: those of the reading. Of steps: those at which the source got the value "
+            "that was read; -1 is before the first.",
+            *(
+                f"{source} is reconstructed by {module} from {', '.join(channels) or 'nothing'}."
+                for source, (module, channels) in trace.reconstructed.items()
+            ),
         ),
     )

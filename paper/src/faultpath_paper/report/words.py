@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 from faultpath.core.text import counted
 from faultpath.report.sentences import wording
+from faultpath.report.tables.escapes import unbroken
 from faultpath_paper.answers import Answer, ClaimVerdict, Ledger, Size, StatementPart
 
 QUICK = "quick"
@@ -56,6 +57,11 @@ def typeset(text: str) -> str:
     for plain, sign in _SIGNS_IN_TEXT:
         text = text.replace(plain, sign)
     return _HYPHEN_FOR_MINUS.sub(wording.MINUS, text)
+
+
+def on_page(text: str) -> str:
+    """Return these words for a page, where no line breaks between a number and its unit."""
+    return unbroken(typeset(text))
 
 
 def figure(of: ClaimVerdict | StatementPart) -> str:

@@ -30,7 +30,8 @@ _PAIRED = {
 def sentences(record: AuditResult) -> tuple[str, ...]:
     """Return all that a record says, a sentence or two each: changes first, then the answers."""
     changes = [phrases.change(record, change) for change in record.changes if not record.invalid]
-    return (*changes, *sum(_answers(record).values(), list[str]()))
+    said = {*_unchanged(record)}  # change by change, above
+    return (*changes, *(s for s in sum(_answers(record).values(), list[str]()) if s not in said))
 
 
 def answers(record: AuditResult) -> dict[str, str]:
@@ -191,15 +192,19 @@ def _left_open(record: AuditResult) -> Iterator[str]:
     yield from phrases.in_trials_that_ran(record)
     yield from _insignificant(record)
     yield from phrases.not_standing(record)
-    if same := [e.isolated for e in record.changes if e.turn == "none" and not e.unsettled]:
-        at = " or the ".join(same)
-        yield f"No change from the fault at the {at} alone to the shared fault is significant."
+    yield from _unchanged(record)
     if record.facts.judged:
         yield "Other scenes and other conditions are not among the results."
     else:
         yield (
             "Another size or sign of the fault, another library and another wiring were not tried."
         )
+
+
+def _unchanged(record: AuditResult) -> Iterator[str]:
+    if same := [e.isolated for e in record.changes if e.turn == "none" and not e.unsettled]:
+        at = " or the ".join(same)
+        yield f"No change from the fault at the {at} alone to the shared fault is significant."
 
 
 def _insignificant(record: AuditResult) -> Iterator[str]:
@@ -218,11 +223,12 @@ def _insignificant(record: AuditResult) -> Iterator[str]:
         yield f"No difference is significant {series(at)}, where both nearly always {both}."
     if not sizes:
         return
-    true = f"true ones of {series(list(sizes.values()))} pp, in this order,"
-    if len(set(sizes.values())) == 1:
-        true = f"a true one of {next(iter(sizes.values()))} pp"
-    would = "" if MISSING in sizes.values() else f"; {true} would be found in 8 of 10 audits"
-    yield f"No difference is significant {series(list(sizes))}{would}."
+    text = f"No difference is significant {series(list(sizes))}"
+    if MISSING not in sizes.values():
+        least, most = (end(map(int, sizes.values())) for end in (min, max))
+        size = f"one of about {least}" if least == most else f"those of about {least} to {most}"
+        text += f": only {size} pp would have been found reliably (in 8 of 10 audits)"
+    yield f"{text}."
 
 
 def would_change(record: AuditResult) -> Iterator[str]:

@@ -13,6 +13,8 @@ from faultpath.stats.estimate import ALPHA
 
 HELPS = ALPHA / 2
 """Level at which an error raises success."""
+FEW_SCENES = 30
+"""With fewer scenes for pairs, a scan says that it can show little of them."""
 ANY_REPAIR = "REPAIR"
 """Stands in a command for the name of a variant that only its reader knows."""
 
@@ -69,7 +71,8 @@ def sentences(record: ScanResult) -> tuple[str, ...]:
     if record.invalid:
         return ()
     results = (*_results(record), *_idle(record), *_halved(record), _counts(record))
-    return (*results, *_unsized(record), *_hard(record), *_failed(record), _limits(record))
+    left_out = (*_few(record), *_unsized(record), *_hard(record), *_failed(record))
+    return (*results, *left_out, _limits(record))
 
 
 def _results(record: ScanResult) -> Iterator[str]:
@@ -191,6 +194,17 @@ def _counts(record: ScanResult) -> str:
         f"seemed to cost success and went on{others}; {counted(pairs, 'pair')} ran in {second} "
         "other scenes."
     )
+
+
+def _few(record: ScanResult) -> Iterator[str]:
+    """Say where pairs ran in so few scenes that little can be shown of them."""
+    scenes = record.scenes[1]
+    if record.chosen and scenes < FEW_SCENES:
+        yield (
+            f"In {counted(scenes, 'scene')} only pairs that cancel nearly completely are seen: a "
+            "pair that is not listed may cancel as well. A larger library leaves more scenes for "
+            "pairs."
+        )
 
 
 def _failed(record: ScanResult) -> Iterator[str]:

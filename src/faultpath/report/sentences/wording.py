@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from faultpath.analyses.effects import Difference, Effect
 from faultpath.analyses.facts import ComparisonFacts
@@ -12,6 +12,8 @@ from faultpath.core.text import capital
 from faultpath.stats.estimate import BreakEven, Estimate
 
 MINUS = "−"
+_ADDED = ("offset", "noise", "bias", "drift")
+"""Kinds of fault whose sizes have the unit of the reading."""
 _ROUNDING = 1e-9
 """Below this a metric and its interval may differ from 0 by rounding alone."""
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -108,9 +110,16 @@ def ended(facts: ComparisonFacts, status: str) -> str:
     return facts.ends.get(status, status)
 
 
-def faults(facts: ComparisonFacts) -> str:
-    """Return what the fault does to each channel, whoever gets it; empty in records without it."""
-    words = (fault.aimed_at("*").describe() for fault in facts.faults)
+def faults(facts: ComparisonFacts, units: Mapping[str, str] | None = None) -> str:
+    """Return what the fault does to each channel, whoever gets it, with the unit of what it adds
+    where `units` of channels are known; empty in records without it."""
+    words: list[str] = []
+    for fault in facts.faults:
+        of = (units or {}).get(fault.channel, "1")
+        how = fault.intervention
+        added = how.kind in _ADDED and not getattr(how, "relative", False)
+        in_unit = f" ({unit(of)})" if added and of not in ("", "1") else ""
+        words.append(fault.aimed_at("*").describe() + in_unit)
     # `describe` says at whom a fault aims, and an audit aims it at each in turn.
     return "; ".join(re.sub(" at every [a-z]+", "", text) for text in words)
 
@@ -128,6 +137,11 @@ def in_words(name: str) -> str:
 def sentence(words: str) -> str:
     """Return words with a capital letter in front and a full stop behind."""
     return f"{capital(words).removesuffix('.')}."
+
+
+def seeds_run(facts: ComparisonFacts) -> str:
+    """Return `, seeds 0, 1`; nothing for results of other tools that name no seed but 0."""
+    return "" if facts.judged and facts.seeds == (0,) else f", {seeds(facts.seeds)}"
 
 
 def seeds(values: tuple[int, ...]) -> str:

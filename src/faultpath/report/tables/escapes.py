@@ -25,6 +25,11 @@ def visible(text: str) -> str:
     return _UNSEEN.sub(lambda match: f"[U+{ord(match[0]):04X}]", text)
 
 
+def unbroken(text: str) -> str:
+    """Return text in which no line breaks between a number and its unit."""
+    return re.sub(r"(?<=\d) (?=%|pp\b)", "\N{NO-BREAK SPACE}", text)
+
+
 def html(text: str) -> str:
     """Return text that HTML and SVG show as it is, between tags and in quoted attributes."""
     return escape(visible(text))
