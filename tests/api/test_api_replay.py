@@ -114,7 +114,7 @@ def test_the_verb_says_where_versions_and_conditions_part(folder, capsys) -> Non
     said = " ".join(capsys.readouterr().out.split())
     begin = f"{SCENE}, seed 0, shared, calibrated and blind: At 0.10 s the slope that the"
     assert said.count(", seed 0, ") == 3  # two trials that ran again, and the couple
-    assert f"{begin} controller of blind reads is" in said
+    assert f"{begin} controller reads is" in said
     assert command(folder, **one, condition=["correct", "shared"], as_json=True) == 0
     partings = json.loads(capsys.readouterr().out)
     couples = [[(t["variant"], t["condition"]) for t in of["trials"]] for of in partings]

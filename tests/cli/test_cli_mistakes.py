@@ -1,8 +1,9 @@
 """Every mistake ends in one sentence that names what is wrong, with status 2, and harms nothing."""
 
 import pytest
-from cli_runs import SYSTEMS, TOY, audit, faultpath
+from cli_runs import TOY, audit, faultpath
 from pydantic import TypeAdapter
+from written import written
 
 from faultpath.core.errors import UserError
 from faultpath.run.question import CheckQuestion, ask
@@ -158,8 +159,8 @@ def test_lists_of_names_hold_each_name_once_and_no_empty_one(text):
     assert ask(CheckQuestion, {"variants": "a, b"}).variants == ("a", "b")
 
 
-def test_checks_that_nothing_could_be_seen_for_are_one_line():
-    line = ["check", f"{SYSTEMS / 'slow_toy.py'}:broken", "--set", "where=cart", "--workers", "0"]
-    shown = faultpath(*line).out.splitlines()
+def test_checks_that_nothing_could_be_seen_for_are_one_line(tmp_path):
+    broken = written(tmp_path, "def run(self, *given):\n    raise ZeroDivisionError")
+    shown = faultpath("check", broken, "--workers", "0").out.splitlines()
     (unjudged,) = [row for row in shown if row.startswith("not judged")]
     assert unjudged.startswith("not judged  determinism, scene independence, pairing, ")
