@@ -125,8 +125,8 @@ CASES = {
     "what the plant measures, and what reads it": (
         without(OLD, "push"),
         heard("new", speedometer=(3, -8)),
-        "At 0.15 s the speed that the observer reads is 3 m/s in old, −8 m/s in new, and most at "
-        "0.25 s: 5 m/s in old, −8 m/s in new; the state differs at the same "
+        "At 0.15 s the speed that the observer reads is 3 m/s in old, −8 m/s in new; they differ "
+        "most at 0.25 s: 5 m/s in old, −8 m/s in new; the state differs at the same "
         "time; both ended at 0.30 s (success).",
     ),
     "a module of one version": (

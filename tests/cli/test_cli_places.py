@@ -144,6 +144,8 @@ def test_a_file_is_no_folder_for_a_run(command: str, tmp_path: Path) -> None:
 
 QUESTIONS = COMMANDS | {
     "scan of another error": [*COMMANDS["scan"], "--fault", "velocity:offset=0.1"],
+    "map of another fault": ["velocity" if a == "gain" else a for a in COMMANDS["map"]],
+    "map with another seed": [*COMMANDS["map"], "--seeds", "1"],
     "scan with another seed": [*COMMANDS["scan"], "--seeds", "1"],
 }
 
@@ -154,6 +156,8 @@ QUESTIONS = COMMANDS | {
         ("audit", "map"),
         ("map", "audit"),
         ("scan", "scan of another error"),
+        ("map", "map of another fault"),
+        ("map", "map with another seed"),
         ("scan", "scan with another seed"),
     ],
 )
@@ -162,7 +166,9 @@ def test_a_run_does_not_go_on_in_one_of_another_question(first: str, second: str
     results()
     assert faultpath(*QUESTIONS[first], "--out", "run").status == 0
     before = {path: path.read_bytes() for path in Path("run").iterdir() if path.is_file()}
-    faultpath(*QUESTIONS[second], "--out", "run").refused("another")
+    faultpath(*QUESTIONS[second], "--out", "run").refused(
+        "holds another run, with another question"
+    )
     assert all(path.read_bytes() == data for path, data in before.items())
 
 

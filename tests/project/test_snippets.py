@@ -114,7 +114,10 @@ def test_python_of_a_document_runs(document: Path, workspace: Path, run: Run) ->
 @pytest.mark.parametrize(
     "document", [path for path in TEXTS if commands(TEXTS[path])], ids=lambda path: path.name
 )
-def test_console_of_a_document_runs(document: Path, run: Run) -> None:
+def test_console_of_a_document_runs(
+    document: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delitem(sys.modules, "mine", raising=False)  # of another test: `init` refuses it
     checker = doctest.OutputChecker()
     for line, output in commands(TEXTS[document]):
         brief = OF_ALL_SCENES.match(line) and not output.strip()

@@ -27,8 +27,8 @@ FINDINGS = (
         Recheck(why="sample", scenes=("s1", "s2", "s3", "s4"), unit_scenes=20, **AGAIN).model_copy(
             update={"deviation": OTHERWISE}
         ),
-        "Results do not repeat: 4 scenes of 'old' under gain scaled by 0.5, seed 3, run again "
-        "without the others of its 20, differs in 2 of 4 scenes, such as 's1' (1 trial with "
+        "Results do not repeat: a second run of 4 scenes of 'old' under gain scaled by 0.5, seed 3, "
+        "without the other scenes of its block of 20, differs in 2 of 4 scenes, such as 's1' (1 trial with "
         "another end, time_s by up to 0.25, other note). ",
     ),
     (
@@ -68,15 +68,15 @@ FINDINGS = (
             scene="s1",
             deviation=Deviation(raised="no", scenes=("s1",), of=1),
         ),
-        "Signals of 2 of 16 trials were not recorded: run again, it came out otherwise: old, "
-        "shared, s1: failed the second time (no), which differs.",
+        "2 of 16 trials came out otherwise when they ran again to record signals, which are not "
+        "kept: the first, old, shared, s1, failed the second time (no), which differs.",
     ),
     (
         MissingTrials(
             variant="new", condition="shared", trials=1, unit="scene", first="s1", trial="3"
         ),
-        "Under the shared fault, 1 trial of new is missing, for example that in s1 (seed 3): each "
-        "voids its pair.",
+        "Under the shared fault, 1 trial of new is missing, for example that in s1 (seed 3): "
+        "pairs that lack a trial do not count.",
     ),
     (
         MissingTrials(

@@ -150,7 +150,7 @@ def test_other_conditions_are_blank_and_not_left_out(
     assert list(titles(runs)) == ["correct", "predictor", "reconstruction", "planner", "shared"]
     table = effects(runs)
     told = [(line.label, line.entries[-1].text) for line in table.lines if line.entries]
-    assert told[2][1] == "every pair void"
+    assert told[2][1] == "every pair missing"
     assert told[6][1] == "not run"
     text = page(runs)
     panels = re.findall(r"<svg.*?</svg>", text, re.DOTALL)

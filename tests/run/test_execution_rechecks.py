@@ -85,7 +85,10 @@ def _plan(kind: str, count: int = 1, **options: str):
     [
         ("drifts", r"Results do not repeat: .* of 'plain' under correct inputs, seed 0"),
         ("crowded", r"Results do not repeat: .* of 'plain' .*time_s by up"),
-        ("plant writes", r"Results do not repeat: 1 scene of 'plain' .* a copy of every reading"),
+        (
+            "plant writes",
+            r"Results do not repeat: .* 1 scene of 'plain' .* a copy of every reading",
+        ),
         ("writes", r"A module writes .*tap mass -> planner.thrust: the reader"),
         ("hashless", r"All 10 scenes carry the same hashes of initial state"),
     ],

@@ -1,4 +1,4 @@
-"""Parts that audit, map and scan share: rounds of trials, and a record."""
+"""Parts that audit, map and scan share: rounds of trials, and a result."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Generator
@@ -34,7 +34,7 @@ Rounds: TypeAlias = Generator[Round, Trials, Items]
 
 @dataclass(frozen=True)
 class Analysis(ABC, Generic[Items]):
-    """A question, the rounds of trials that answer it, and the record that is made of them."""
+    """A question, the rounds of trials that answer it, and the result that follows from them."""
 
     noun: ClassVar[str] = ""
     """Plural of that which rounds add; empty for an analysis of one round."""
@@ -50,4 +50,4 @@ class Analysis(ABC, Generic[Items]):
 
     @abstractmethod
     def conclude(self, trials: Trials, deliveries: Deliveries, items: Items) -> Any:
-        """Return the record. `UserError` where nothing is left to compare."""
+        """Return the result. `UserError` where nothing is left to compare."""

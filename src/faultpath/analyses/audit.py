@@ -44,7 +44,7 @@ class AuditAnalysis(Analysis[None]):
         yield Round(self.plan, stop=self.stops)
 
     def conclude(self, trials: Trials, deliveries: Deliveries, items: None = None) -> AuditResult:
-        """Return the decision record of a run; raises as `faultpath.analyses.decide`."""
+        """Return the result of an audit; raises as `faultpath.analyses.decide.decide`."""
         question = self.question
         conditions = [
             condition.model_copy(
@@ -65,7 +65,7 @@ class AuditAnalysis(Analysis[None]):
 
 
 def faulted_taps(counts: Sequence[TapCount]) -> tuple[FaultedTap, ...]:
-    """Return the taps at which receipts show a fault in force."""
+    """Return the taps at which the delivery log shows a fault in force."""
     return tuple(
         FaultedTap(
             channel=tap.channel,

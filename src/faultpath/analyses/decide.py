@@ -126,7 +126,8 @@ def _effect(
 
 
 def _missing(condition: str, pairs: Pairs, tested: TestedContrasts) -> Missing | None:
-    """Return what is missing of a condition's pairs; `None` where nothing is, nor elsewhere."""
+    """Return what is missing of a condition's pairs; `None` where all count and no trial of any
+    condition is missing."""
     void = int(pairs.void.sum())
     if condition not in tested.missing.bounds:
         return Missing(void=void) if void else None

@@ -86,8 +86,8 @@ def missing_outcomes(
 def nearest_to_nothing(
     lowest: Mapping[str, Contrast], highest: Mapping[str, Contrast]
 ) -> dict[str, Contrast]:
-    """Return contrasts as near to no difference as missing outcomes allow: those with all missing
-    outcomes against the repair where they are still for it, and likewise."""
+    """Return contrasts as near to no difference as missing outcomes allow: with all of them against
+    the repair where it is ahead even so, with all for it where the baseline is, else none."""
     nearest: dict[str, Contrast] = {}
     for name, low in lowest.items():
         high = highest[name]

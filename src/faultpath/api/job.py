@@ -17,7 +17,7 @@ from faultpath.api.display import Display, Show, display
 from faultpath.api.runs import MapRun, Run, ScanRun
 from faultpath.api.systems import Chosen, choose, executor_of
 from faultpath.core.errors import UserError
-from faultpath.core.text import unknown
+from faultpath.core.text import counted, unknown
 from faultpath.report.sentences.findings import describe
 from faultpath.run import Plan, SystemSpec
 from faultpath.run.code import system_code
@@ -81,7 +81,7 @@ def begin(
     """Read a question, build its system and find its scenes; `call` is the name of the function.
 
     `UserError` for what does not fit, named as its caller names it, for a library that does not
-    exist, and as `choose`. Only where no library is named, a system's only one stands for it.
+    exist, and as `choose`. Where no library is named, a system's only one is taken.
     """
     question = ask(model, arguments, isinstance(progress, Display) and progress.is_command)
     how = vars(question)
@@ -175,7 +175,8 @@ class Job:
         """
         say = self.display.say
         if result.failures:
-            say(f"{len(result.failures)} trials failed and void their pairs.", "bold red")
+            failed = counted(len(result.failures), "trial")
+            say(f"{failed} failed, whose pairs do not count.", "bold red")
         alike: dict[str, list[Failure]] = {}
         for failure in result.failures:
             alike.setdefault(failure.error, []).append(failure)

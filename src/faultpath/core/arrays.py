@@ -160,7 +160,8 @@ def misfit(name: str, value: Constant, shape: tuple[int, ...]) -> str | None:
     if not own or (len(own) <= len(shape) and shape[len(shape) - len(own) :] == own):
         return None
     reading = f"the reading of one scene has {_size(shape)}"
-    return f"{name} has {_size(own)}, and {reading}: give one number, or as many as it has"
+    advice = "give one number" + (", or as many as it has" if shape else "")
+    return f"{name} has {_size(own)}, and {reading}: {advice}"
 
 
 def _size(shape: tuple[int, ...]) -> str:

@@ -77,7 +77,7 @@ class Compared:
 
     def absent(self, condition: str) -> str:
         """Say why it has no effect under a condition."""
-        return "every pair void" if condition in self.record.titles else "not run"
+        return "every pair missing" if condition in self.record.titles else "not run"
 
 
 def titles(runs: Sequence[Compared]) -> dict[str, str]:

@@ -50,6 +50,8 @@ class Deviation(Result):
         for name, gap in self.gaps:
             label = "readings" if name == "trajectory_hash" else name
             parts.append(f"other {label}" if gap is None else f"{label} by up to {gap:.3g}")
+        if self.of == 1:
+            return f"differs ({', '.join(parts)})"
         count = f"{len(self.scenes)} of {counted(self.of, 'scene')}"
         return f"differs in {count}, such as {self.scenes[0]!r} ({', '.join(parts)})"
 

@@ -34,6 +34,8 @@ def read_seeds(value: object) -> object:
                 f"{value!r:.80} is not a list of whole numbers, for example 0,1,2, or 0..2"
             )
         ends = [(_seed(part[1]), _seed(part[2] or part[1])) for part in parts if part]
+        if any(last < first for first, last in ends):
+            raise ValueError(f"{value!r:.80} holds a range that ends below its beginning")
         if any(last - first >= _MOST for first, last in ends):
             raise ValueError(f"{value!r:.80} holds too many seeds: a range has at most {_MOST}")
         seeds = tuple(seed for first, last in ends for seed in range(first, last + 1))
@@ -74,7 +76,7 @@ def read_names(value: object) -> object:
 
 
 _path = BeforeValidator(lambda place: Path(place) if isinstance(place, str) else place)
-_DRAWN = "Seeds of the noise, and of trained models where there are any."
+_DRAWN = "Seeds of the noise, and of trained models where there are any: 0,1,2 or 0..2."
 
 Names = Annotated[
     tuple[str, ...],

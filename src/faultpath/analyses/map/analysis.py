@@ -69,7 +69,7 @@ class MapAnalysis(Analysis[list[Point]]):
             plan, notice = self.plan(points), ""
 
     def conclude(self, trials: Trials, deliveries: Deliveries, items: Sequence[Point]) -> MapResult:
-        """Return the record of a map, to the bit the same in whatever order its points were run.
+        """Return the result of a map, to the bit the same in whatever order its points were run.
 
         `UserError` where a point has no pair left.
         """
@@ -85,8 +85,9 @@ class MapAnalysis(Analysis[list[Point]]):
     def plan(self, points: Sequence[Point]) -> Plan:
         """Return the plan of all points. Variants that a fault cannot reach run once.
 
-        Equal errors are one fault that is shared, as in an audit. Plans have the same name
-        whatever spread or number of points is asked for.
+        Equal errors are one fault that is shared, as in an audit. Plans of one fault,
+        pair of modules, range, library and seeds have the same name, whatever spread or number of
+        points is asked for.
         """
         question, facts, rows = self.question, self.facts, list[Row]()
         for point in points:
@@ -103,7 +104,7 @@ class MapAnalysis(Analysis[list[Point]]):
                 parts = at_readers(faults, self.system.variants[name].readers)
                 rows += rows_of(self.condition(point), {name: parts}, question.seeds)
         return Plan(
-            name=self.named[0],
+            name=f"{'-'.join(self.named)}-seeds-{','.join(map(str, question.seeds))}",
             system=self.spec,
             library=facts.library,
             scenes=self.scenes,

@@ -186,7 +186,7 @@ class ScanAnalysis(Analysis[Scanned]):
         return (
             f"{len(self.errors)} errors alone in {len(self.first)} scenes first, {first} trials; "
             "then halves of sizes that cost too much, and pairs of those that cost success, in "
-            f"other scenes, about {self.at_most()} trials in all at most."
+            f"other scenes, at most about {self.at_most()} trials in all."
         )
 
     def plan(self, tried: Iterable[ScanError], scanned: Scanned | None = None) -> Plan:
@@ -200,7 +200,7 @@ class ScanAnalysis(Analysis[Scanned]):
             scenes += scanned.second
         # Rounds of one scan share a folder, and those of another question must not.
         return Plan(
-            name=f"{'-'.join(self.named[:-1])}-seeds-{self.question.seeds}",
+            name=f"{'-'.join(self.named[:-1])}-seeds-{','.join(map(str, self.question.seeds))}",
             system=self.spec,
             library=self.facts.library,
             scenes=scenes,

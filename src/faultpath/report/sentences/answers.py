@@ -226,8 +226,8 @@ def _insignificant(record: AuditResult) -> Iterator[str]:
     text = f"No difference is significant {series(list(sizes))}"
     if MISSING not in sizes.values():
         least, most = (end(map(int, sizes.values())) for end in (min, max))
-        size = f"one of about {least}" if least == most else f"those of about {least} to {most}"
-        text += f": only {size} pp would have been found reliably (in 8 of 10 audits)"
+        size = f"{least} pp" if least == most else f"{least} to {most} pp, by condition,"
+        text += f": only those of about {size} or more would have been found in 8 of 10 audits"
     yield f"{text}."
 
 
@@ -256,9 +256,9 @@ def would_change(record: AuditResult) -> Iterator[str]:
     if any(effect.extreme == "ceiling" for effect in tested):
         yield "Harder scenes or a larger fault: where both succeed, a difference can hardly show."
     if not record.few and any(e.least_pp and not e.sign for e in tested):
-        instead = "" if judged else ", or --stop-when, which allows for looks"
+        instead = "" if judged else ", or --stop-when, which allows for several analyses"
         yield (
-            f"Fresh scenes, which no audit has looked at, and more of them{instead}: they find "
+            f"Fresh scenes, which no audit has used, and more of them{instead}: they find "
             "smaller differences. Adding scenes to this audit would raise its error rate above 5 %."
         )
     if judged:

@@ -50,9 +50,9 @@ def describe(finding: Finding) -> str:
             return f"No signals were recorded: {finding.error}"
         case Unrepeated():
             return (
-                f"Signals of {finding.trials} of {counted(finding.of, 'trial')} were not recorded: "
-                f"run again, it came out otherwise: {finding.variant}, {finding.condition}, "
-                f"{finding.scene}: {finding.deviation}."
+                f"{finding.trials} of {counted(finding.of, 'trial')} came out otherwise when they "
+                "ran again to record signals, which are not kept: the first, "
+                f"{finding.variant}, {finding.condition}, {finding.scene}, {finding.deviation}."
             )
         case MissingTrials():
             seed = "seed " if finding.unit == "scene" else ""
@@ -60,7 +60,7 @@ def describe(finding: Finding) -> str:
             return (
                 f"{capital(where(finding.condition))}, {counted(finding.trials, 'trial')} of "
                 f"{finding.variant} {'is' if finding.trials == 1 else 'are'} missing, for example "
-                f"that in {finding.first}{which}: each voids its pair."
+                f"that in {finding.first}{which}: pairs that lack a trial do not count."
             )
         case ExtraTrials():
             return (
@@ -90,13 +90,14 @@ def _recheck(finding: Recheck) -> str:
     how = (
         "alone, with a copy of every reading for each module"
         if finding.why == "guarded"
-        else f"without the others of its {finding.unit_scenes}"
+        else f"without the other scenes of its block of {finding.unit_scenes}"
     )
     return (
-        f"Results do not repeat: {counted(len(finding.scenes), 'scene')} of {trials}, run again "
-        f"{how}, {finding.deviation}. Effects may be chance: look for random numbers that are not "
-        "of faultpath.generator, for threads, for what scenes of one call of run() share or one "
-        "call leaves for the next, and for what is written into an array after it was delivered."
+        f"Results do not repeat: a second run of {counted(len(finding.scenes), 'scene')} of "
+        f"{trials}, {how}, {finding.deviation}. Effects may be chance: look for random numbers "
+        "that are not of faultpath.generator, for threads, for what scenes of one call of run() "
+        "share or one call leaves for the next, and for what is written into an array after it was "
+        "delivered."
     )
 
 

@@ -91,7 +91,7 @@ def _beginning(kind: Kind, at: Difference, one: Ended, other: Ended) -> str:
         text += f" (and {counted(at.others, 'more ' + _NOUN[kind])} differ{'s' * (at.others == 1)})"
     if at.most is not None:
         time_s, values = at.most
-        text += f", and most at {_time(time_s)} s: {_both(values, of_unit, one, other)}"
+        text += f"; they differ most at {_time(time_s)} s: {_both(values, of_unit, one, other)}"
     return text
 
 

@@ -171,9 +171,10 @@ def earlier_analyses(record: AuditResult) -> str:
     with_scenes = f" with {series([str(n) for n in counts])} scenes" if counts else ""
     primaries = series(list(dict.fromkeys(f"'{analysis.primary}'" for analysis in earlier)))
     return (
-        f"This audit was concluded before{with_scenes}, led by {primaries}: after such a look, "
-        "more than 5 % of audits would report a difference between equally good versions. Run it "
-        "in scenes that no audit has looked at, or with --stop-when, which allows for looks."
+        f"This audit was concluded before{with_scenes}, led by {primaries}: after an earlier "
+        "analysis, more than 5 % of audits would report a difference between equally good "
+        "versions. Run it in scenes that no audit has used, or with --stop-when, which allows for "
+        "several analyses."
     )
 
 
@@ -241,7 +242,7 @@ def stopping(record: AuditResult) -> str:
     what = "every effect" if every else "the primary contrast"
     small = f" or shown to be smaller than {margin_pp:g} pp" if margin_pp else ""
     return (
-        f"the audit was to stop once {what} is significant{small}, at a look after every "
+        f"the audit was to stop once {what} is significant{small}, analysed after every "
         f"{'scene' if order.per_analysis == 1 else f'{order.per_analysis} scenes'}, or after "
         f"{record.facts.n_scenes}; the order of its scenes was drawn beforehand from the hash "
         f"of the library and the seed {order.seed}"

@@ -26,8 +26,9 @@ _CAUSES = {
     (
         False,
         True,
-    ): "the second run in a process differs: keep what a module remembers in its `memory`, and "
-    "nothing in global variables, such as a counter, a cache or a generator made once.",
+    ): "the second run in a process differs: keep what a module remembers in its `memory`, or in "
+    "variables of run(), and nothing in globals or attributes, such as a counter, a cache or a "
+    "generator made once.",
     (
         True,
         False,
@@ -94,8 +95,8 @@ def _determinism(name: str, seen: Seen) -> Check:
     for variant in seen.unsteady():
         cause = (
             "draw from the `rng` of `step` or from faultpath.generator, not from np.random, and "
-            "keep what a module remembers in its `memory`, not in a global variable; in worker "
-            "processes, a check can tell the two apart."
+            "keep what a module remembers in its `memory`, or in variables of run(), not in "
+            "globals or attributes; in worker processes, a check can tell the two apart."
         )
         if seen.apart:
             between = bool(seen.differs(variant, "anew", "alone"))

@@ -20,7 +20,7 @@ from faultpath.system.declared import Library
 from faultpath.system.outcome import Outcome, failed_outcome
 
 FEW = 5
-"""So many failed trials without one that ran to its end end the run."""
+"""So many failed trials, with none that ran to its end, stop the run."""
 _WHOLE = "All scenes of the block at once: "
 """Begins the traceback of a block that raised an error, of which each scene is then run alone."""
 Stop = Callable[[Trials], bool]

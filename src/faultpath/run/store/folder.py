@@ -183,7 +183,9 @@ def read_outcomes(path: Path) -> Trials:
     try:
         return decode_outcomes(read_regular(path))
     except Unreadable as error:
-        raise UserError(f"{path} is damaged ({error}): run the same again to rebuild it") from None
+        raise UserError(
+            f"{path} is damaged ({error}): run the same command again to rebuild it"
+        ) from None
 
 
 def read_regular(path: Path) -> bytes:

@@ -58,8 +58,8 @@ def check_same(folder: Path, previous: Manifest, manifest: Manifest, shared: boo
     """Raise `UserError` unless `folder` may go on with the plan that is asked for.
 
     The selection of scenes may differ: a quick look at some scenes grows into the whole library
-    in the same folder, and keeps what it has. In a folder that rounds of one plan share, their
-    treatments may differ as well.
+    in the same folder, and keeps what it has. In a folder that the rounds of one map or
+    scan share, their treatments may differ as well.
     """
     mine, theirs = manifest.plan, previous.plan
     compared: dict[str, tuple[object, object]] = {
