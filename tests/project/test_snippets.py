@@ -14,6 +14,7 @@ notes are about the past and are left alone.
 import doctest
 import re
 import shlex
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from subprocess import CompletedProcess

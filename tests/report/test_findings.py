@@ -28,8 +28,8 @@ FINDINGS = (
             update={"deviation": OTHERWISE}
         ),
         "Results do not repeat: a second run of 4 scenes of 'old' under gain scaled by 0.5, seed 3, "
-        "without the other scenes of its block of 20, differs in 2 of 4 scenes, such as 's1' (1 trial with "
-        "another end, time_s by up to 0.25, other note). ",
+        "without the other scenes of its block of 20, differs in 2 of 4 scenes, such as 's1' (1 "
+        "trial with another end, time_s by up to 0.25, other note). ",
     ),
     (
         Recheck(why="guarded", scenes=("s1",), unit_scenes=20, wrote="tap a -> b.c", **AGAIN),
