@@ -27,8 +27,8 @@ FINDINGS = (
         Recheck(why="sample", scenes=("s1", "s2", "s3", "s4"), unit_scenes=20, **AGAIN).model_copy(
             update={"deviation": OTHERWISE}
         ),
-        "Results do not repeat: a second run of 4 scenes of 'old' under gain scaled by 0.5, seed 3, "
-        "without the other scenes of its block of 20, differs in 2 of 4 scenes, such as 's1' (1 "
+        "Results do not repeat: a second run of 4 scenes of 'old' under gain scaled by 0.5, seed "
+        "3, without the other scenes of its block of 20, differs in 2 of 4 scenes, such as 's1' (1 "
         "trial with another end, time_s by up to 0.25, other note). ",
     ),
     (
