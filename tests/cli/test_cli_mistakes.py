@@ -15,6 +15,7 @@ TOY_MISTAKES = {
     "baseline": ({"baseline": "calibratd"}, ["'calibratd'", "did you mean", "blind, calibrated"]),
     "fault": ({"fault": "gian:scale=2"}, ["'gian'", "did you mean 'gain'", "velocity"]),
     "preset of none": ({"fault": "calibration=0.1"}, ["'calibration'", "none"]),
+    "stop at a word": ({"stop-when": "x"}, ["invalid value for '--stop-when': 'x' is not one of"]),
     "words for scenes": ({"scenes": "few"}, ["--scenes", "audit --help"]),
     "scenes in other digits": ({"scenes": "٣"}, ["--scenes", "'٣'", "a whole number"]),
     "scenes as Python writes it": ({"scenes": "2_0"}, ["--scenes", "'2_0'", "a whole number"]),

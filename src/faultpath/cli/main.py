@@ -128,7 +128,9 @@ def _sentence(error: BaseException) -> str | None:
     from faultpath.core.error_source import described, explained
 
     if isinstance(error, TyperException):  # from the parser of the arguments
-        text = error.format_message().strip().rstrip(".").replace(". ", ": ")
+        # What typer reads by pydantic has pydantic's own words before the sentence.
+        text = error.format_message().replace("Value error, ", "")
+        text = text.strip().rstrip(".").replace(". ", ": ")
         if not text:
             return ""
         text = re.sub(r" \(Possible options: (.*)\)$", r", did you mean \1?", text)
