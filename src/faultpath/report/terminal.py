@@ -29,7 +29,7 @@ _EFFECTS = (*DIFFERENCE, "holm", "scenes", "void", "break-even")
 
 
 def decision(record: AuditResult, details: bool = False) -> RenderableType:
-    """Return the result of an audit as text and tables: verdict, success, effects, findings.
+    """Return the result of an audit as text and tables: headline, success, effects, findings.
 
     `details` adds every sentence of the record, and what would change it.
     """
