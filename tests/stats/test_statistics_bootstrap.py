@@ -14,7 +14,7 @@ from faultpath.core.streams import generator
 from faultpath.stats.contrast import change, percentile_interval
 from faultpath.stats.effects import mean_effect, median_effect, success_effect, success_rate
 from faultpath.stats.estimate import SCENES, SCENES_AND_SEEDS, Estimate
-from faultpath.stats.resamples import Resamples
+from faultpath.stats.resamples import Resamples, quantiles
 
 conditional_effect = partial(success_effect, test="conditional")
 """The paper's effect."""
@@ -56,6 +56,19 @@ def test_counts_are_those_of_the_scenes_drawn_one_resample_after_another(n_resam
     blocks = list(resamples.blocks())
     assert len(blocks) > 1 or n_scenes == 1
     np.testing.assert_array_equal(np.concatenate(blocks), plain, strict=True)
+
+
+def test_many_scenes_have_the_same_draws_in_a_byte_for_each_count(monkeypatch):
+    few = Resamples.draw("many", 400, n_resamples=1000)
+    monkeypatch.setattr("faultpath.stats.resamples._MOST_CELLS", 399_999)
+    many = Resamples.draw("many", 400, n_resamples=1000)
+    assert (few.counts.dtype, many.counts.dtype) == (np.float64, np.uint8)
+    np.testing.assert_array_equal(many.counts, few.counts)
+    values = np.random.default_rng(0).normal(size=(400, 2))
+    np.testing.assert_allclose(many.sums(values), few.sums(values), rtol=1e-13)
+    scenes = np.arange(400, dtype=np.intp)
+    medians = [quantiles(each.counts, values[:, 0], scenes, 0.5) for each in (few, many)]
+    np.testing.assert_array_equal(*medians)
 
 
 @fewer

@@ -97,7 +97,7 @@ def _mean(
     # of 0 exactly 0, on which "the interval excludes 0" depends.
     ran = ~np.isnan(values)
     totals = seed_sums(values)
-    sums = resamples.counts @ totals if resamples else np.empty(0)
+    sums = resamples.sums(totals) if resamples else np.empty(0)
     return Contrast(
         value=float(scale * (values if ran.all() else totals).sum() / (n_scenes * n_seeds)),
         unit=unit,

@@ -16,27 +16,31 @@ _BLOCK = 50_000
 """Counts of one pass: with intermediate results they fit into a core's own cache."""
 _SLACK = 1e-9
 """Tolerance on a count of values, since q times a count may miss a whole number by rounding."""
+_MOST_CELLS = 10_000_000
+"""Counts of more scenes and resamples are kept in a byte each: 10,000 of either took 800 MB. That
+a scene occurs 256 times in a resample has a chance below 1e-500."""
 
 
 @dataclass(frozen=True, eq=False)
 class Resamples:
     """How often each scene occurs in each bootstrap resample.
 
-    ``counts`` is [resamples, scenes]; each row adds up to the number of scenes. One product with a
-    [scenes] or [scenes, k] array gives the resampled sums of any number of effects. Two effects
-    may be compared draw by draw only when they share the object.
+    ``counts`` is [resamples, scenes]; each row adds up to the number of scenes. Two effects may be
+    compared draw by draw only when they share the object.
     """
 
     label: str
     seed: int
-    counts: Floats = field(repr=False)
+    counts: NDArray[np.float64 | np.uint8] = field(repr=False)
 
     @classmethod
     def draw(cls, label: str, n_scenes: int, *, seed: int = 0, n_resamples: int = 10_000) -> Self:
         """Draw from the stream ("bootstrap", label, seed); ``label`` names the scene library."""
         if n_scenes < 1 or n_resamples < 1:
             raise ValueError(f"cannot draw {n_resamples} resamples of {n_scenes} scenes")
-        stream, counts = generator("bootstrap", label, seed), np.empty((n_resamples, n_scenes))
+        stream = generator("bootstrap", label, seed)
+        many = n_resamples * n_scenes > _MOST_CELLS
+        counts = np.empty((n_resamples, n_scenes), np.uint8 if many else np.float64)
         for rows in _blocks(n_resamples, n_scenes):  # their size does not change the draws
             part = counts[rows]
             chosen = stream.integers(0, n_scenes, size=part.shape)
@@ -57,7 +61,14 @@ class Resamples:
 
     def blocks(self) -> Iterator[Floats]:
         """Yield ``counts`` in order, a few resamples at a time, to limit the size of copies."""
-        return (self.counts[rows] for rows in _blocks(self.n_resamples, self.n_scenes))
+        for rows in _blocks(self.n_resamples, self.n_scenes):
+            yield self.counts[rows].astype(np.float64, copy=False)
+
+    def sums(self, values: Floats) -> Floats:
+        """Return the sums of ``values`` [scenes] or [scenes, k] in each resample."""
+        if self.counts.dtype == np.float64:
+            return self.counts @ values
+        return np.concatenate([block @ values for block in self.blocks()])
 
     def check(self, n_scenes: int) -> None:
         """Raise `ValueError` for outcomes of another number of scenes."""
@@ -72,7 +83,9 @@ class Resamples:
         return self is other or np.array_equal(self.counts, other.counts)
 
 
-def quantiles(counts: Floats, values: Floats, scenes: NDArray[np.intp], q: float) -> Floats:
+def quantiles(
+    counts: NDArray[np.float64 | np.uint8], values: Floats, scenes: NDArray[np.intp], q: float
+) -> Floats:
     """Return the quantile ``q`` of ``values`` [n] in every resample that holds any of them.
 
     A resample, a row of ``counts`` [resamples, scenes], holds each value as often as the value's
