@@ -10,10 +10,12 @@ from faultpath.core.files.atomic import write_text
 from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.plain import Misread, model_of
 from faultpath.report.tables import Table
-from faultpath.run import Deliveries, SystemSpec, Trials, load_system
 from faultpath.run.code import system_code
+from faultpath.run.deliveries import Deliveries
 from faultpath.run.execution.runner import RunResult
+from faultpath.run.plan import SystemSpec
 from faultpath.run.provenance import RunProvenance
+from faultpath.run.registry import load_system
 from faultpath.run.store.folder import (
     OUTCOMES,
     RunFolder,
@@ -22,6 +24,7 @@ from faultpath.run.store.folder import (
     read_regular,
     unseal,
 )
+from faultpath.run.trials import Trials
 from faultpath.system import System
 from faultpath_paper.answers import Reproduction, Sweep
 from faultpath_paper.cells import HELD_OUT, PROFILES, SYSTEM, Profile

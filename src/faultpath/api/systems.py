@@ -12,7 +12,7 @@ from typing import cast
 from faultpath import run
 from faultpath.core.errors import UserError
 from faultpath.core.text import extra, one_line
-from faultpath.run import SystemSpec
+from faultpath.run.plan import SystemSpec
 from faultpath.run.registry import factory_name, installed_systems
 from faultpath.run.work.executor import Executor
 from faultpath.run.work.processes import local
