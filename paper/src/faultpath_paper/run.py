@@ -14,7 +14,7 @@ from faultpath.run.code import system_code
 from faultpath.run.deliveries import Deliveries
 from faultpath.run.execution.runner import RunResult
 from faultpath.run.plan import SystemSpec
-from faultpath.run.provenance import RunProvenance
+from faultpath.run.provenance import RunProvenance, unseal
 from faultpath.run.registry import load_system
 from faultpath.run.store.folder import (
     OUTCOMES,
@@ -22,7 +22,6 @@ from faultpath.run.store.folder import (
     keyed,
     read_outcomes,
     read_regular,
-    unseal,
 )
 from faultpath.run.trials import Trials
 from faultpath.system import System

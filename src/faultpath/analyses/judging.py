@@ -15,7 +15,7 @@ from faultpath.core.text import listed, unknown
 from faultpath.run.deliveries import unproven
 from faultpath.run.findings import ExtraTrials, Finding, MissingTrials, NoneFailed, SeveralTasks
 from faultpath.run.received.question import JudgeQuestion
-from faultpath.run.received.trial import NO_OUTCOME, Received
+from faultpath.run.received.results import NO_OUTCOME, Received
 from faultpath.run.store.tables import FIXED
 from faultpath.run.trials import Trials
 from faultpath.system.outcome import Metric, Status

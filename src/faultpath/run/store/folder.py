@@ -1,25 +1,24 @@
-"""A run on disk, and whether its files are still as the run left them.
-
-A run folder may come from anybody and may have been edited by anybody. Its provenance names each
-file that a report is made from with a digest; whoever reads the folder reads all of them, compares,
-and parses the very bytes that it has compared.
-"""
+"""A run on disk: the plan that it is of, its finished blocks, and the tables made from them."""
 
 import hashlib
-from collections.abc import Generator, Iterable, Mapping, Sequence
+import json
+from collections.abc import Generator, Iterable, Sequence
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Any
 
 from faultpath.core.errors import UserError
 from faultpath.core.files import atomic
-from faultpath.core.files.atomic import Say, locked, make_folder, write_file
-from faultpath.core.files.opening import contents
+from faultpath.core.files.atomic import Say, check_folder, locked, make_folder, write_file
+from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.parquet import Unreadable
+from faultpath.core.files.plain import Misread, model_of, read_json
+from faultpath.core.results import Frozen
 from faultpath.run.attempt import Done
-from faultpath.run.code import CodeState
+from faultpath.run.code import CodeState, named
 from faultpath.run.deliveries import Deliveries
-from faultpath.run.store.manifest import Manifest, check_same, read_manifest
+from faultpath.run.plan import Plan
 from faultpath.run.store.tables import (
     decode_outcomes,
     decode_shard,
@@ -32,6 +31,24 @@ from faultpath.run.trials import Trials
 OUTCOMES, TRACES, DELIVERIES = "outcomes.parquet", "traces.parquet", "deliveries.json"
 """Files that are assembled at the end of a run."""
 AGAIN = "run it again, into a new folder"
+FORMAT = 3
+"""Version of the folder's layout and of its columns."""
+
+
+class Manifest(Frozen):
+    """The plan of a run folder and the exact system and scenes that it was run with."""
+
+    format: int = FORMAT
+    faultpath_version: str
+    code: CodeState
+    """Source files, data files, packages."""
+    library_hash: str
+    plan: Plan
+
+    def encode(self) -> bytes:
+        """Return the file's contents."""
+        content = self.model_dump(mode="json")
+        return (json.dumps(content, indent=2, sort_keys=True) + "\n").encode()
 
 
 def keyed(place: Path, name: str, code: CodeState) -> Path:
@@ -165,6 +182,62 @@ class RunFolder:
         write_file(path, data, self.path)
 
 
+def read_manifest(path: Path) -> Manifest | None:
+    """Read a manifest, `None` when there is none; `UserError` when this version cannot use it."""
+    check_folder(path.parent)
+    try:
+        data = contents(path, LARGEST_TEXT)
+        content: Any = read_json(data)
+        # Before the model, which other formats do not fit.
+        if content["format"] != FORMAT:
+            raise UserError(
+                f"{path.parent} was written in format {content['format']} and this faultpath reads "
+                f"format {FORMAT}: choose another folder, or the version of faultpath that wrote it"
+            )
+        return model_of(data, Manifest)
+    except FileNotFoundError:
+        return None
+    except (OSError, Misread, TypeError, KeyError) as error:
+        why = error.strerror if isinstance(error, OSError) else error
+        raise UserError(
+            f"{path} cannot be read as a manifest ({why}): choose a new folder, or delete this one"
+        ) from error
+
+
+def check_same(folder: Path, previous: Manifest, manifest: Manifest, shared: bool = False) -> None:
+    """Raise `UserError` unless `folder` may go on with the plan that is asked for.
+
+    The selection of scenes may differ: a quick look at some scenes grows into the whole library
+    in the same folder, and keeps what it has. In a folder that the rounds of one map or
+    scan share, their treatments may differ as well.
+    """
+    mine, theirs = manifest.plan, previous.plan
+    compared: dict[str, tuple[object, object]] = {
+        "version of faultpath": (previous.faultpath_version, manifest.faultpath_version),
+        "question": (theirs.name, mine.name),
+        "system": (theirs.system, mine.system),
+        "library": (theirs.library, mine.library),
+        "state of the library": (previous.library_hash, manifest.library_hash),
+    }
+    if not shared:
+        compared["set of variants, faults or seeds"] = (theirs.rows, mine.rows)
+        per_analysis = theirs.scenes_per_analysis, mine.scenes_per_analysis
+        compared["number of scenes from analysis to analysis"] = per_analysis
+    differences = [what for what, (before, now) in compared.items() if before != now]
+    changed = previous.code.changed(manifest.code)
+    if changed and not differences:
+        raise UserError(
+            f"{folder} holds trials of other code than this (changed since: {named(changed)}): "
+            "they are kept and not mixed with new ones; choose a new folder, or go back to that "
+            "code to resume"
+        )
+    if differences:
+        raise UserError(
+            f"{folder} holds another run, with another {differences[0]}: choose a new folder, or "
+            "repeat the command that made this one"
+        )
+
+
 def _read_shard(path: Path, key: str, scenes: Sequence[str]) -> Done:
     try:
         data = contents(path)
@@ -200,33 +273,6 @@ def read_regular(path: Path) -> bytes:
         raise UserError(
             f"{path} cannot be read ({error.strerror}): give the folder of a finished run."
         ) from error
-
-
-def seal(folder: Path, names: Iterable[str]) -> dict[str, str]:
-    """Return the SHA-256 of each file by name."""
-    return {name: _digest(contents(folder / name)) for name in names}
-
-
-def unseal(folder: Path, digests: Mapping[str, str], needed: Iterable[str]) -> dict[str, bytes]:
-    """Return the contents of every file that `digests` names, by name.
-
-    Raises `UserError`, with the names, where one that is needed has no digest, one is missing, or
-    one has another digest: it was changed.
-    """
-    unnamed = [name for name in needed if name not in digests]
-    if unnamed:
-        raise UserError(
-            f"{folder / 'provenance.json'} has no digest of {', '.join(unnamed)}, as if an earlier "
-            f"faultpath had written it: {AGAIN}."
-        )
-    files = {name: read_regular(folder / name) for name in digests}
-    changed = [name for name, data in files.items() if _digest(data) != digests[name]]
-    if changed:
-        raise UserError(
-            f"{folder}: {', '.join(changed)} changed since the run, by the SHA-256 in "
-            f"provenance.json: bring back what the run wrote, or {AGAIN}."
-        )
-    return files
 
 
 def _digest(data: bytes) -> str:
