@@ -29,7 +29,7 @@ class Deliveries(Result):
     format: Literal[2] = 2
     rows: tuple[RowDeliveries, ...] = ()
     findings: tuple[Finding, ...] = ()
-    """What a reader of the run's results has to know."""
+    """Findings that a reader of the run's results has to know."""
 
     @classmethod
     def of(

@@ -14,7 +14,7 @@ from faultpath.core.text import counted
 from faultpath.run.trials import HASHES
 
 Unit: TypeAlias = Literal["scene", "task"]
-"""What counts as one in results of other tools: a scene, or a task with all of its scenes."""
+"""Unit that counts as one in results of other tools: a scene, or a task with all its scenes."""
 
 
 class Deviation(Result):
@@ -25,14 +25,13 @@ class Deviation(Result):
     raised: str = ""
     """Error that it raised; likewise."""
     scenes: tuple[str, ...]
-    """Those that came out otherwise."""
+    """Scenes that differ."""
     of: int
     """Scenes that ran again."""
     ended: int = 0
     """Scenes that ended in another status."""
     gaps: tuple[tuple[str, float | None], ...] = ()
-    """Each part of an outcome that differs, with the largest difference; `None` where it is no
-    number."""
+    """Parts of an outcome that differ, with the largest difference; `None` for no number."""
 
     def __str__(self) -> str:
         if self.died:
@@ -139,7 +138,7 @@ class RaisedTogether(Result):
     of: int
     """Blocks of the run."""
     error: str
-    """Of the first."""
+    """Error of the first."""
 
 
 class Unrecorded(Result):
@@ -157,7 +156,7 @@ class Unrepeated(Result):
     of: int
     """Trials that ran again."""
     variant: str
-    """Of the first, as all that follows."""
+    """Variant of the first; so is all that follows."""
     condition: str
     scene: str
     deviation: Deviation

@@ -1,4 +1,4 @@
-"""What runs: treatments over identical scenes, the blocks that they take, and who takes which."""
+"""Plans: treatments over identical scenes, their blocks, and which worker takes which."""
 
 import hashlib
 import json

@@ -37,7 +37,7 @@ class RunCode(Frozen):
 
     faultpath_version: str
     commit: str | None
-    """Of faultpath's own checkout."""
+    """Commit of faultpath's own checkout."""
     dirty: bool | None
     system_fingerprint: str
     """Hash of the sources, data files and packages at the time, and of what the system says."""

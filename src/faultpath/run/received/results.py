@@ -37,9 +37,9 @@ from faultpath.system.declared import check_name, shown
 from faultpath.system.outcome import Status
 
 _PATTERNS = ("eval_info.json", "samples_*.jsonl", "*.eval", "????-??-??T*.json")
-"""Of files read from a folder and those in it; the last are Inspect's logs in JSON."""
+"""Patterns of files read from a folder and those in it; the last are Inspect's logs in JSON."""
 _MARKS = {";": ";", "\t": "TAB", "|": "|"}
-"""What may stand in place of commas, and how messages show it."""
+"""Marks that may stand in place of commas, and how messages show them."""
 _ENDS = {status.value: status for status in Status}
 _TRUTH = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}
 NO_OUTCOME = "the results give no outcome"
@@ -63,7 +63,7 @@ class Received:
     """Not a number where none is given."""
     metrics: Mapping[str, float] = field(default_factory=dict[str, float])
     error: str = ""
-    """Why it says nothing, of a failed one."""
+    """Reason why a failed one has no outcome."""
 
 
 @dataclass(frozen=True)
@@ -256,7 +256,7 @@ def _number(cell: object, what: str) -> float | None:
 
 
 def _status(cell: object, where: str, least: float | None) -> Status:
-    """Return how a trial ended; a cell without an outcome is a trial that says nothing."""
+    """Return how a trial ended; without an outcome it counts as failed."""
     word = cell.strip().lower() if isinstance(cell, str) else cell
     if word is None or word == "" or word != word or word == "nan":
         return Status.FAILED

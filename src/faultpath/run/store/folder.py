@@ -72,13 +72,11 @@ class RunFolder:
         self.manifest = path / "manifest.json"
         self.rechecks = path / "rechecks.json"
         self._shard_files: dict[str, list[Path]] | None = None
-        """By key, as they were listed last: a list for each block would cost its square."""
+        """By key, as listed last: listing the folder for each block would cost its square."""
         self.provenance = path / "provenance.json"
 
     @contextmanager
-    def open(
-        self, manifest: Manifest, notice: Say, shared: bool = False
-    ) -> Generator[None, None, None]:
+    def open(self, manifest: Manifest, notice: Say, shared: bool = False) -> Generator[None]:
         """Create or continue the run, alone in the folder until the end of the `with` block.
 
         `shared` lets plans with other treatments use the folder one after the other. `UserError`
@@ -205,11 +203,11 @@ def read_manifest(path: Path) -> Manifest | None:
 
 
 def check_same(folder: Path, previous: Manifest, manifest: Manifest, shared: bool = False) -> None:
-    """Raise `UserError` unless `folder` may go on with the plan that is asked for.
+    """Raise `UserError` unless `folder` may go on with the plan of `manifest`.
 
-    The selection of scenes may differ: a quick look at some scenes grows into the whole library
-    in the same folder, and keeps what it has. In a folder that the rounds of one map or
-    scan share, their treatments may differ as well.
+    The selection of scenes may differ: a run of some scenes grows into one of the whole library in
+    the same folder, and keeps what it has. In a folder that the rounds of one map or scan share,
+    their treatments may differ as well.
     """
     mine, theirs = manifest.plan, previous.plan
     compared: dict[str, tuple[object, object]] = {
