@@ -241,8 +241,8 @@ def _check_own(start: Path | str, folder: Path) -> None:
     """
     names = imported([start]) if isinstance(start, Path) else {start.partition(".")[0]}
     seen = set[str]()
-    while waiting := sorted(names - seen):
-        seen.add(name := waiting[0])
+    while unseen := sorted(names - seen):
+        seen.add(name := unseen[0])
         files = (folder / name / "__init__.py", folder / f"{name}.py")
         own = next((file for file in files if file.is_file()), None)
         if own is None or ours(name) or not (origins := package_paths(name)):

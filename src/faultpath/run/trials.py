@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import compress
 from typing import Self
 
 import numpy as np
@@ -184,17 +185,17 @@ class Trials:
     def seeds_of(self, variant: str, condition: str) -> tuple[int, ...]:
         """Return the seeds of a variant under a condition, in the order of the plan."""
         planned: list[bool] = np.any(self.planned(variant, condition) >= 0, axis=1).tolist()
-        return tuple(seed for seed, there in zip(self.seeds, planned, strict=True) if there)
+        return tuple(compress(self.seeds, planned))
 
     def rows(self, variant: str, condition: str, seeds: Sequence[int] | None = None) -> Rows:
         """Return the rows `[seeds, scenes]` of a variant under a condition, -1 where none is.
 
         `seeds` are those that were planned there when left out. `KeyError` for one without trials.
         """
-        there = self.seeds_of(variant, condition)
-        chosen = there if seeds is None else seeds
+        planned = self.seeds_of(variant, condition)
+        chosen = planned if seeds is None else seeds
         for seed in chosen:
-            if seed not in there:
+            if seed not in planned:
                 raise KeyError(seed)
         return self.planned(variant, condition)[[self.seeds.index(seed) for seed in chosen]]
 

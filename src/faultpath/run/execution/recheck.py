@@ -120,14 +120,14 @@ class Rechecks:
             drawn = sorted(scenes[1:], key=lambda scene: _hash_order(unit.key, scene))[:SAMPLE]
             scenes = tuple(scene for scene in scenes if scene in drawn)
         others = [candidate for candidate in sound if candidate is not unit] or [unit]
-        other = min(
+        guarded = min(
             others,
             key=lambda candidate: (len(candidate.scenes) == 1, _hash_order("guard", candidate.key)),
         )
-        alone = min(
-            other.scenes[1:] or other.scenes, key=lambda scene: _hash_order(other.key, scene)
+        scene = min(
+            guarded.scenes[1:] or guarded.scenes, key=lambda scene: _hash_order(guarded.key, scene)
         )
-        tasks = (Task(unit, scenes, recheck="sample"), Task(other, (alone,), recheck="guarded"))
+        tasks = (Task(unit, scenes, recheck="sample"), Task(guarded, (scene,), recheck="guarded"))
         return tuple(t for t in tasks if (t.unit.key, t.recheck, t.scenes) not in self._kept)
 
     def handle_reply(self, task: Task, reply: Reply) -> None:

@@ -213,10 +213,12 @@ class RunState:
             scenes = tuple(scene for scene in scenes if scene.id in counted)
         trials: list[Trial] = []
         for row in plan.rows:
-            where, key = (row.variant, row.condition, row.seed), row.treatment.key()
+            address, key = (row.variant, row.condition, row.seed), row.treatment.key()
             part = frozenset(row.scenes or plan.scenes)
-            chosen = (scene for scene in scenes if scene.id in part)
-            trials += [Trial(*where, s.index, s.topology, self.outcomes[key, s.id]) for s in chosen]
+            for scene in scenes:
+                if scene.id in part:
+                    outcome = self.outcomes[key, scene.id]
+                    trials.append(Trial(*address, scene.index, scene.topology, outcome))
         return Trials.of(trials)
 
     @property

@@ -71,9 +71,9 @@ class RunFolder:
         self.failures = path / "failures"
         self.manifest = path / "manifest.json"
         self.rechecks = path / "rechecks.json"
+        self.provenance = path / "provenance.json"
         self._shard_files: dict[str, list[Path]] | None = None
         """By key, as listed last: listing the folder for each block would cost its square."""
-        self.provenance = path / "provenance.json"
 
     @contextmanager
     def open(self, manifest: Manifest, notice: Say, shared: bool = False) -> Generator[None]:
@@ -110,9 +110,9 @@ class RunFolder:
         data = encode_shard(key, shard)
         path = self.shards / f"{key}-{_digest(data)[:32]}.parquet"
         self._write(path, data)
-        for other in self._files_of(key):
-            if other != path:  # the block as it was before its failed trials were tried again
-                other.unlink(missing_ok=True)
+        for file in self._files_of(key):
+            if file != path:  # the block as it was before its failed trials were tried again
+                file.unlink(missing_ok=True)
         self._files_of(key)[:] = [path]
 
     def written(self, keys: Sequence[str]) -> tuple[datetime, datetime]:
@@ -209,30 +209,29 @@ def check_same(folder: Path, previous: Manifest, manifest: Manifest, shared: boo
     the same folder, and keeps what it has. In a folder that the rounds of one map or scan share,
     their treatments may differ as well.
     """
-    mine, theirs = manifest.plan, previous.plan
+    plan, stored = manifest.plan, previous.plan
     compared: dict[str, tuple[object, object]] = {
         "version of faultpath": (previous.faultpath_version, manifest.faultpath_version),
-        "question": (theirs.name, mine.name),
-        "system": (theirs.system, mine.system),
-        "library": (theirs.library, mine.library),
+        "question": (stored.name, plan.name),
+        "system": (stored.system, plan.system),
+        "library": (stored.library, plan.library),
         "state of the library": (previous.library_hash, manifest.library_hash),
     }
     if not shared:
-        compared["set of variants, faults or seeds"] = (theirs.rows, mine.rows)
-        per_analysis = theirs.scenes_per_analysis, mine.scenes_per_analysis
+        compared["set of variants, faults or seeds"] = (stored.rows, plan.rows)
+        per_analysis = stored.scenes_per_analysis, plan.scenes_per_analysis
         compared["number of scenes from analysis to analysis"] = per_analysis
-    differences = [what for what, (before, now) in compared.items() if before != now]
-    changed = previous.code.changed(manifest.code)
-    if changed and not differences:
+    for name, (before, after) in compared.items():
+        if before != after:
+            raise UserError(
+                f"{folder} holds another run, with another {name}: choose a new folder, or repeat "
+                "the command that made this one"
+            )
+    if changed := previous.code.changed(manifest.code):
         raise UserError(
             f"{folder} holds trials of other code than this (changed since: {named(changed)}): "
             "they are kept and not mixed with new ones; choose a new folder, or go back to that "
             "code to resume"
-        )
-    if differences:
-        raise UserError(
-            f"{folder} holds another run, with another {differences[0]}: choose a new folder, or "
-            "repeat the command that made this one"
         )
 
 
