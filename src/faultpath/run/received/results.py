@@ -269,7 +269,7 @@ def _status(cell: object, where: str, least: float | None) -> Status:
     except ValueError as error:
         raise UserError(
             f"{where}: success is {shown(cell)}: give true or false, 1 or 0, {error} with "
-            "--success-from, or success, crash, timeout, or failed for a trial that says nothing."
+            "--success-from, or success, crash, timeout, or failed for a trial without an outcome."
         ) from None
     if least is None and score not in (0.0, 1.0):
         raise UserError(
