@@ -23,10 +23,12 @@ from faultpath.core.trees import packages, release
 from faultpath.core.version import __version__
 from faultpath.run.execution.runner import RunResult
 from faultpath.run.findings import Recheck
-from faultpath.run.store.folder import AGAIN, read_regular
+from faultpath.run.store.folder import read_regular
 from faultpath.run.work.executor import Executor
 
 PROVENANCE = "provenance.json"
+AGAIN = "run it again, into a new folder"
+"""Advice for a folder that is not as its run left it."""
 
 FileName = Annotated[str, StringConstraints(pattern=r"^[a-z_]+\.[a-z]+$")]
 Sha256 = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]

@@ -30,7 +30,6 @@ from faultpath.run.trials import Trials
 
 OUTCOMES, TRACES, DELIVERIES = "outcomes.parquet", "traces.parquet", "deliveries.json"
 """Files that are assembled at the end of a run."""
-AGAIN = "run it again, into a new folder"
 FORMAT = 3
 """Version of the folder's layout and of its columns."""
 
