@@ -23,7 +23,7 @@ import faultpath
 from benchmarks import page
 from benchmarks.results import ROOT, TIMES, Machine, Record, Results, load, record, save
 from benchmarks.rows import ELSEWHERE, ONCE, ROWS, SIDES, Row
-from faultpath.run.execution.provenance import checkout, processor
+from faultpath.run.provenance import checkout, processor
 
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 PACKAGES = ["numpy", "scipy", "torch", "mujoco", "pytorch-mppi", "rotorpy", "torchrl"]

@@ -35,8 +35,9 @@ from torch.profiler import ProfilerActivity, profile
 from benchmarks.results import DEVICE
 from faultpath import open_run
 from faultpath.loop import Batch
-from faultpath.run import SystemSpec, Treatment, load_system
 from faultpath.run.attempt import taps_of
+from faultpath.run.plan import SystemSpec, Treatment
+from faultpath.run.registry import load_system
 
 FLOWN = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L3"}
 LIBRARIES = "training", "selection"

@@ -18,7 +18,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from benchmarks.results import ROOT, WAITS
-from faultpath.run.execution.provenance import processor
+from faultpath.run.provenance import processor
 
 _VARIANTS = "--baseline calibrated --repair typical"
 AUDIT = f"faultpath audit mine.py:create {_VARIANTS} --fault gain:scale=0.6 --out runs/mine"

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from faultpath.run import Trial
+from faultpath.run.trials import Trial
 from faultpath.system import Outcome, Status
 
 

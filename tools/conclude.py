@@ -26,10 +26,13 @@ from faultpath.report.map import tables
 from faultpath.report.sentences.words import words
 from faultpath.report.tables import Table
 from faultpath.report.tables.markdown import blocks
-from faultpath.run import Deliveries, SystemSpec, Trials, load_system
-from faultpath.run.provenance import RunProvenance
-from faultpath.run.store.folder import OUTCOMES, TRACES, read_outcomes, seal
+from faultpath.run.deliveries import Deliveries
+from faultpath.run.plan import SystemSpec
+from faultpath.run.provenance import RunProvenance, seal
+from faultpath.run.registry import load_system
+from faultpath.run.store.folder import OUTCOMES, TRACES, read_outcomes
 from faultpath.run.store.tables import decode_outcomes, decode_traces, encode_traces
+from faultpath.run.trials import Trials
 from faultpath.system import library_of
 
 

@@ -13,7 +13,7 @@ from film_flights import FLIGHTS, RUN, SHOWN, Flights
 from film_halves import CARD, PAD, SIDES, Half, Pace, Story, picture
 
 from faultpath.report.svg import Point, number
-from faultpath.run import SystemShown
+from faultpath.run.shown import SystemShown
 from faultpath.system import FloorPlan, Status
 
 WIDE = CARD - 2 * PAD

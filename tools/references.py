@@ -23,7 +23,7 @@ import documents
 import repeats
 from blocks import OUTCOMES, PROVENANCE, REFERENCE, ROOT, Repeats, Run, load
 
-from faultpath.run.execution.provenance import processor
+from faultpath.run.provenance import processor
 
 TREE = ROOT / "build" / "references"
 KEPT = ROOT / "build" / "repeats"

@@ -20,10 +20,12 @@ from faultpath.analyses.model import AuditResult
 from faultpath.analyses.scan.analysis import ScanAnalysis, scan_analysis
 from faultpath.analyses.scan.model import ScanResult
 from faultpath.api.replaying import outcomes_at
-from faultpath.run import Plan, SystemSpec, Treatment, Trials, load_system
 from faultpath.run.attempt import Done, attempt
+from faultpath.run.plan import Plan, SystemSpec, Treatment
+from faultpath.run.registry import load_system
 from faultpath.run.store.folder import read_outcomes
 from faultpath.run.store.tables import TrialAddress
+from faultpath.run.trials import Trials
 from faultpath.system import Outcome, System, library_of
 
 SECONDS = 3.0

@@ -25,17 +25,12 @@ from faultpath.core.errors import Stopped, UserError
 from faultpath.core.files.atomic import make_folder, write_text
 from faultpath.core.text import counted
 from faultpath.report.sentences.findings import describe
-from faultpath.run import (
-    Group,
-    Plan,
-    Row,
-    SystemSpec,
-    load_system,
-    pair,
-)
-from faultpath.run.execution.provenance import run_provenance
 from faultpath.run.execution.runner import RunResult, run_plan
+from faultpath.run.pairing import Group, pair
+from faultpath.run.plan import Plan, Row, SystemSpec
+from faultpath.run.provenance import run_provenance
 from faultpath.run.question import AuditQuestion
+from faultpath.run.registry import load_system
 from faultpath.run.work.executor import Executor, Progress
 from faultpath.system import Status, library_of
 

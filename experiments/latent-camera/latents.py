@@ -21,7 +21,7 @@ from study import ROOT, Design
 sys.path.insert(0, str(ROOT / "examples"))
 import latent_camera as camera
 
-from faultpath.run import load_system
+from faultpath.run.registry import load_system
 
 
 def measured(observation, goal, rooms: str, error: dict) -> dict[str, float]:

@@ -20,8 +20,8 @@ import latent_camera as camera
 
 from faultpath.faults import at_readers
 from faultpath.loop import Batch
-from faultpath.run import Treatment
 from faultpath.run.attempt import taps_of
+from faultpath.run.plan import Treatment
 
 SCENE, ERROR = "selection/000", 0.85
 STRIPS = (

@@ -17,17 +17,11 @@ from faultpath.analyses.compared import compared
 from faultpath.analyses.family import TestedContrasts, decide_conditions
 from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.faults import at_readers
-from faultpath.run import (
-    Group,
-    Plan,
-    Row,
-    SystemSpec,
-    Treatment,
-    Trials,
-    load_system,
-    pair,
-)
 from faultpath.run.execution.runner import run_plan
+from faultpath.run.pairing import Group, pair
+from faultpath.run.plan import Plan, Row, SystemSpec, Treatment
+from faultpath.run.registry import load_system
+from faultpath.run.trials import Trials
 from faultpath.system import Status
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -8,7 +8,7 @@ from pydantic import Field
 from faultpath.core.errors import UserError
 from faultpath.core.files.plain import Misread, read_yaml
 from faultpath.core.results import Frozen
-from faultpath.run import SystemSpec
+from faultpath.run.plan import SystemSpec
 
 
 class Design(Frozen):

@@ -30,9 +30,11 @@ from faultpath.core.files.atomic import make_folder, write, write_text
 from faultpath.faults import Address, at_readers, encode_record
 from faultpath.faults.recorded import decode_record
 from faultpath.report.sentences.findings import describe
-from faultpath.run import Plan, Row, Treatment, Trials, load_system
-from faultpath.run.execution.provenance import run_provenance
 from faultpath.run.execution.runner import run_plan
+from faultpath.run.plan import Plan, Row, Treatment
+from faultpath.run.provenance import run_provenance
+from faultpath.run.registry import load_system
+from faultpath.run.trials import Trials
 from faultpath.system import library_of
 
 HERE = Path(__file__).resolve().parent

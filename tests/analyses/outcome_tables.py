@@ -10,9 +10,9 @@ from faultpath.analyses.decide import decide
 from faultpath.analyses.facts import ComparisonFacts, SceneOrder
 from faultpath.analyses.model import CORRECT, SHARED, AuditResult, Condition
 from faultpath.faults import FaultText
-from faultpath.run import Trial, Trials
 from faultpath.run.findings import Deviation, Finding, Recheck, Unpaired
 from faultpath.run.question import AuditQuestion
+from faultpath.run.trials import Trial, Trials
 from faultpath.system import Status
 
 BASELINE, REPAIR = "old", "new"

@@ -13,9 +13,10 @@ from still import Still
 from faultpath.analyses.scan.analysis import ScanAnalysis, Scanned, scan_analysis
 from faultpath.analyses.scan.model import ScanResult
 from faultpath.interface import Interface
-from faultpath.run import Deliveries, Plan, SystemSpec, Trials
+from faultpath.run.deliveries import Deliveries
+from faultpath.run.plan import Plan, SystemSpec
 from faultpath.run.question import ScanQuestion, ask
-from faultpath.run.trials import Trial
+from faultpath.run.trials import Trial, Trials
 from faultpath.system import Variant
 from faultpath.system.outcome import Outcome, Status, failed_outcome
 

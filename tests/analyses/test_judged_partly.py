@@ -8,7 +8,7 @@ from faultpath.analyses.judging import pair_results
 from faultpath.analyses.model import AuditResult
 from faultpath.report.sentences.words import words
 from faultpath.run.received.question import JudgeQuestion
-from faultpath.run.received.trial import Received
+from faultpath.run.received.results import Received
 from faultpath.system.outcome import Status
 
 

@@ -12,8 +12,9 @@ from faultpath.analyses.map.lattice import UNITS
 from faultpath.core.errors import UserError
 from faultpath.faults import FaultText
 from faultpath.report.sentences.maps import size_label
-from faultpath.run import SystemSpec, load_system
+from faultpath.run.plan import SystemSpec
 from faultpath.run.question import AuditQuestion, MapQuestion, ask
+from faultpath.run.registry import load_system
 from faultpath.system import library_of
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"

@@ -9,7 +9,7 @@ from faultpath.analyses.facts import ComparisonFacts
 from faultpath.analyses.parting import Heard, Parting, parting
 from faultpath.interface import read_interface
 from faultpath.report.sentences.parting import compared, ending, parted
-from faultpath.run import SystemShown, VariantShown
+from faultpath.run.shown import SystemShown, VariantShown
 from faultpath.run.store.signals import Signal
 from faultpath.run.store.tables import TrialAddress
 from faultpath.system import Outcome, Status

@@ -27,8 +27,8 @@ from faultpath.report.sentences.answers import answers
 from faultpath.report.sentences.phrases import in_short
 from faultpath.report.sentences.shares import ahead
 from faultpath.report.sentences.words import words
-from faultpath.run import Trials
 from faultpath.run.question import StopWhen
+from faultpath.run.trials import Trials
 from faultpath.system import Status
 
 SIDES = ((REPAIR, 1), (BASELINE, -1))

@@ -19,7 +19,7 @@ from faultpath.analyses.decide import decide
 from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.core.errors import UserError
 from faultpath.report.sentences.words import words
-from faultpath.run import Trials
+from faultpath.run.trials import Trials
 from faultpath.system import Status
 
 

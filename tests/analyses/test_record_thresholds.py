@@ -12,8 +12,10 @@ from faultpath.core.errors import UserError
 from faultpath.report.audit_tables import markdown_table
 from faultpath.report.sentences.words import words
 from faultpath.report.terminal import decision
-from faultpath.run import SystemSpec, Trials, load_system
+from faultpath.run.plan import SystemSpec
 from faultpath.run.question import AuditQuestion, ask
+from faultpath.run.registry import load_system
+from faultpath.run.trials import Trials
 from faultpath.system import Metric, Status
 
 CELLS = {"correct": (96, 2, 2), "shared": (30, 40, 10)}

@@ -11,7 +11,7 @@ from faultpath.analyses.model import CORRECT, SHARED, AuditResult
 from faultpath.report.sentences.answers import answers
 from faultpath.report.sentences.phrases import in_short
 from faultpath.report.sentences.words import words
-from faultpath.run import Trials
+from faultpath.run.trials import Trials
 from faultpath.system import Status
 
 YES, NO, FAILED = Status.SUCCESS, Status.CRASH, Status.FAILED

@@ -11,7 +11,7 @@ from faultpath.report.sentences.answers import answers
 from faultpath.report.sentences.phrases import change, estimand, in_short
 from faultpath.report.sentences.shares import ahead
 from faultpath.report.sentences.words import words
-from faultpath.run import Trials
+from faultpath.run.trials import Trials
 from faultpath.system import Status
 
 LEVEL, GAIN, LOSS = (50, 5, 5), (40, 30, 2), (40, 2, 30)

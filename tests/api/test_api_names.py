@@ -81,7 +81,7 @@ def state():
 torch.set_num_threads(3)
 before, path = state(), list(sys.path)
 import faultpath, faultpath_quadrotor.plant.module
-from faultpath.run import Treatment
+from faultpath.run.plan import Treatment
 from faultpath.run.attempt import Done, attempt
 system = faultpath.load_system("quadrotor", options={"wind": "L1", "candidates": 1024})
 faultpath_quadrotor.plant.module.CONTROL_STEPS = 8

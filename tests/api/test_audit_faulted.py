@@ -6,9 +6,10 @@ from toy_audits import TOY
 from faultpath.analyses.audit import AuditAnalysis, audit_analysis
 from faultpath.analyses.model import AuditResult, FaultedTap
 from faultpath.faults import FaultText
-from faultpath.run import SystemSpec, load_system
 from faultpath.run.execution.runner import run_plan
+from faultpath.run.plan import SystemSpec
 from faultpath.run.question import AuditQuestion
+from faultpath.run.registry import load_system
 
 STEPS = 100
 

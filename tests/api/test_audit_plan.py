@@ -7,7 +7,7 @@ from faultpath.analyses.audit import AuditAnalysis, audit_analysis
 from faultpath.core.errors import UserError
 from faultpath.faults import Fault, FaultText, Scale
 from faultpath.interface import read_interface
-from faultpath.run import SystemSpec
+from faultpath.run.plan import SystemSpec
 from faultpath.run.question import (
     AuditQuestion,
     CheckQuestion,

@@ -13,7 +13,7 @@ from written import CREATE, written
 
 from faultpath.api.systems import check_named
 from faultpath.core.errors import UserError
-from faultpath.run import SystemSpec
+from faultpath.run.plan import SystemSpec
 
 
 @pytest.fixture(scope="module")

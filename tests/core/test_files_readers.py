@@ -17,8 +17,7 @@ from faultpath.core.files.parquet import Unreadable
 from faultpath.core.files.plain import Misread, read_json, read_yaml
 from faultpath.interface import read_interface
 from faultpath.learning.model_card import FitRecord, read_card
-from faultpath.run.store.folder import RunFolder, read_outcomes, read_regular
-from faultpath.run.store.manifest import read_manifest
+from faultpath.run.store.folder import RunFolder, read_manifest, read_outcomes, read_regular
 
 Read = Callable[[Path], object]
 

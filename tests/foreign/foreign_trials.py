@@ -5,8 +5,8 @@ from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from typing import Any
 
-from faultpath.run import Treatment
 from faultpath.run.attempt import attempt
+from faultpath.run.plan import Treatment
 from faultpath.system import System
 
 ROOT = Path(__file__).resolve().parents[2]

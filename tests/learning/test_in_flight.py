@@ -11,8 +11,8 @@ from faultpath.core.errors import UserError
 from faultpath.faults import Fault, Scale, resolve
 from faultpath.learning import Learned, errors, fit, uncertainty_training, withheld, withholding
 from faultpath.loop import Batch, Inputs, Module, Port, Reading, Taps
-from faultpath.run import Treatment
 from faultpath.run.attempt import taps_of
+from faultpath.run.plan import Treatment
 from faultpath.system import ComposedSystem, FunctionPlant, Parts
 
 GAIN, VELOCITY = Port("gain", "model"), Port("velocity", "difference")

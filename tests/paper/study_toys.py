@@ -11,7 +11,7 @@ from faultpath_paper.pages import figure_3, in_text, table_1, table_2, table_3, 
 from faultpath_paper.results import Results
 from toy_runs import CELLS, MEASUREMENTS, Ends, trials
 
-from faultpath.run import Trial, Trials
+from faultpath.run.trials import Trial, Trials
 from faultpath.system import Status
 
 SCENES = 100

@@ -14,7 +14,7 @@ from faultpath_paper.results import Results
 from study_toys import SCENES, as_published, mirrored, whole
 from toy_runs import EMPTY, NOTHING, trials
 
-from faultpath.run import Trials
+from faultpath.run.trials import Trials
 from faultpath.system import Status
 
 Answers = dict[str, ClaimVerdict]

@@ -26,7 +26,7 @@ from toy_runs import (
 )
 
 from faultpath.report.tables import MISSING, Table
-from faultpath.run import Trials
+from faultpath.run.trials import Trials
 
 NAMES = tuple(page.name for page in PAGES)
 

@@ -13,7 +13,8 @@ from faultpath_paper.results import Results
 from outcomes import trial
 
 from faultpath.report.tables import Entry, Table
-from faultpath.run import Pairs, Trial, Trials
+from faultpath.run.pairing import Pairs
+from faultpath.run.trials import Trial, Trials
 from faultpath.system import Outcome, Status
 
 SCENES = 20

@@ -12,7 +12,7 @@ import grimp
 
 Run = Callable[..., CompletedProcess[str]]
 
-ROOMS = ("loop", "faults", "interface", "run", "system", "learning")
+ROOMS = ("loop", "faults", "interface", "system", "learning")
 PUBLIC = {"faultpath", *(f"faultpath.{room}" for room in ROOMS)}
 """With the modules of `faultpath.plugin`, where a package may take names of the engine from."""
 

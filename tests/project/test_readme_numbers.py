@@ -12,10 +12,11 @@ import pytest
 
 from faultpath.analyses.audit import AuditAnalysis, audit_analysis
 from faultpath.analyses.model import AuditResult
-from faultpath.run import SystemSpec, load_system
 from faultpath.run.execution.runner import run_plan
+from faultpath.run.plan import SystemSpec
 from faultpath.run.provenance import RunProvenance
 from faultpath.run.question import AuditQuestion
+from faultpath.run.registry import load_system
 from faultpath.run.store.folder import read_outcomes
 from faultpath.run.store.tables import encode_outcomes
 

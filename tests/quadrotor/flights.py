@@ -15,7 +15,8 @@ from faultpath_quadrotor.vehicle import VehicleParameters
 from faultpath.core.arrays import Array
 from faultpath.faults import Fault, resolve
 from faultpath.loop import DeliveryListener, Query, Reading, Tap, Taps
-from faultpath.run import SystemSpec, load_system
+from faultpath.run.plan import SystemSpec
+from faultpath.run.registry import load_system
 from faultpath.system import Outcome
 
 STEPS = 12

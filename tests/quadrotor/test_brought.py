@@ -11,9 +11,9 @@ from flights import bits, fly, quadrotor
 
 from faultpath.api.systems import with_parts
 from faultpath.core.errors import UserError
-from faultpath.run import SystemSpec
 from faultpath.run.check.check import chosen_variants
 from faultpath.run.code import system_code
+from faultpath.run.plan import SystemSpec
 
 ROOT = Path(__file__).parents[2]
 PARTS = Path(__file__).with_name("own_parts.py")

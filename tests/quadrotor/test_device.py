@@ -23,8 +23,8 @@ from faultpath.core import arrays
 from faultpath.core.errors import UserError
 from faultpath.faults import at_readers
 from faultpath.loop import Batch, DeliveryListener, Query, Reading, Tap, Taps
-from faultpath.run import Treatment
 from faultpath.run.attempt import taps_of
+from faultpath.run.plan import Treatment
 
 LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L3"}
 UNANCHORED = {"clearance": "depth", "wind": "L1"}

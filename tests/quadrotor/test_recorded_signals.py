@@ -4,10 +4,11 @@ import numpy as np
 from flights import fault
 
 from faultpath.faults import at_readers
-from faultpath.run import SystemSpec, Treatment, load_system
 from faultpath.run.attempt import Done, attempt
 from faultpath.run.check.blocks import BlockSpec, run_block
 from faultpath.run.execution.recheck import deviation
+from faultpath.run.plan import SystemSpec, Treatment
+from faultpath.run.registry import load_system
 from faultpath.run.store.signals import TOGETHER
 
 SCENE = ("selection/003",)

@@ -6,9 +6,9 @@ from faultpath_quadrotor.estimators.protocol import ExactEstimator
 from flights import HELD_OUT, STEPS, quadrotor
 
 from faultpath.loop import Batch, readers
-from faultpath.run import Treatment
 from faultpath.run.attempt import taps_of
 from faultpath.run.check.reads import ReadLog
+from faultpath.run.plan import Treatment
 
 LEARNED = {"predictor": "wm-a-wind", "clearance": "depth", "wind": "L2"}
 FLOWN = [

@@ -22,9 +22,10 @@ from faultpath.analyses.model import Condition, FaultedTap
 from faultpath.faults import FaultText
 from faultpath.interface import Interface, read_interface
 from faultpath.report.inputs import ReportInput
-from faultpath.run import SystemShown, Trial, Trials, VariantShown
 from faultpath.run.provenance import RunProvenance
 from faultpath.run.question import AuditQuestion
+from faultpath.run.shown import SystemShown, VariantShown
+from faultpath.run.trials import Trial, Trials
 from faultpath.system import Outcome, Status
 from faultpath.system.declared import FloorPlan, Pillar, Prism
 

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from faultpath.run import Trial, Trials
 from faultpath.run.store.tables import Trace
+from faultpath.run.trials import Trial, Trials
 
 
 class Page(HTMLParser):

@@ -13,9 +13,9 @@ from playwright.sync_api import Browser, Page, expect
 
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
-from faultpath.run import Trials
 from faultpath.run.store.signals import DRAWN, Signal
 from faultpath.run.store.tables import TrialAddress
+from faultpath.run.trials import Trials
 from faultpath.system import FloorPlan
 
 pytestmark = pytest.mark.browser

@@ -6,8 +6,8 @@ from datetime import UTC, datetime
 
 from stale_toys import Mine
 
-from faultpath.run.execution.provenance import checkout, run_provenance
 from faultpath.run.execution.runner import run_plan
+from faultpath.run.provenance import checkout, run_provenance
 from faultpath.run.work.processes import local
 
 

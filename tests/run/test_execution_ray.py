@@ -17,8 +17,8 @@ from written import written
 
 import faultpath
 from faultpath.core.errors import Notice, Stopped, UserError
-from faultpath.run import SystemSpec
 from faultpath.run.execution.runner import run_plan
+from faultpath.run.plan import SystemSpec
 from faultpath.run.store.folder import RunFolder
 from faultpath.run.work import ray_cluster
 from faultpath.run.work.executor import Failed, Lost, Returned, elsewhere, send_message

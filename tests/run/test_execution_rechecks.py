@@ -13,7 +13,7 @@ from weighed import READERS, ToySystem
 from faultpath.core.errors import Stopped
 from faultpath.loop import Reading
 from faultpath.report.sentences.findings import describe
-from faultpath.run import Deliveries
+from faultpath.run.deliveries import Deliveries
 from faultpath.run.execution.recheck import SAMPLE, Rechecks
 from faultpath.run.execution.runner import run_plan
 

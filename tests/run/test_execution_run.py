@@ -13,8 +13,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.files import parquet
 from faultpath.loop import NotDelivered, TapCount, UndeclaredReader
 from faultpath.run.execution.runner import RunResult, run_plan
-from faultpath.run.execution.schedule import units_of
-from faultpath.run.plan import Plan, Row, Treatment
+from faultpath.run.plan import Plan, Row, Treatment, units_of
 from faultpath.run.store import tables
 from faultpath.run.store.folder import RunFolder, read_outcomes
 from faultpath.run.store.tables import decode_traces, traces_of
@@ -120,7 +119,7 @@ def test_a_shard_without_a_delivery_log_is_named_and_run_again(whole, tmp_path, 
     after = run_plan(plan(), tmp_path, workers=0, notice=notices.append)
     assert after.blocks_kept == 0
     assert len(notices) == after.blocks_computed
-    assert all("kept no delivery log" in notice for notice in notices)
+    assert all("is damaged (it was written under another key)" in notice for notice in notices)
     assert after.deliveries == whole[0].deliveries
 
 

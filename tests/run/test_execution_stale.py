@@ -10,8 +10,8 @@ import pytest
 from stale_toys import Mine
 
 from faultpath.core.errors import UserError
-from faultpath.run.execution.provenance import RunProvenance, run_provenance
 from faultpath.run.execution.runner import run_plan
+from faultpath.run.provenance import RunProvenance, run_provenance
 from faultpath.run.work.processes import local
 
 PLACES = ("file", "helper", "data")

@@ -6,9 +6,10 @@ from pathlib import Path
 import pytest
 
 from faultpath.faults import at_readers
-from faultpath.run import SystemSpec, Treatment, load_system
 from faultpath.run.attempt import Done, attempt
 from faultpath.run.code import source_state, system_code
+from faultpath.run.plan import SystemSpec, Treatment
+from faultpath.run.registry import load_system
 
 ROOT = Path(__file__).resolve().parents[2]
 FLOWN = {

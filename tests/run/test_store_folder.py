@@ -12,8 +12,7 @@ from faultpath.loop import TapCount
 from faultpath.run.attempt import Done
 from faultpath.run.code import CodeState
 from faultpath.run.plan import Plan, Row, SystemSpec, Treatment
-from faultpath.run.store.folder import RunFolder, read_outcomes
-from faultpath.run.store.manifest import FORMAT, Manifest
+from faultpath.run.store.folder import FORMAT, Manifest, RunFolder, read_outcomes
 from faultpath.run.store.tables import encode_shard
 from faultpath.system.outcome import Outcome, Status
 

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from outcomes import outcome, trial
 
-from faultpath.run import Group, PairingRefused, Pairs, Trial, Trials, pair
+from faultpath.run.pairing import Group, PairingRefused, Pairs, pair
+from faultpath.run.trials import Trial, Trials
 from faultpath.system import Status
 
 ONE, TWO = Group("repair", "shared"), Group("baseline", "shared")

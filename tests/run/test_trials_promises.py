@@ -7,8 +7,10 @@ from pathlib import Path
 import pytest
 
 from faultpath.core.errors import SystemMistake, UserError
-from faultpath.run import SystemShown, SystemSpec, Treatment, load_system, system_shown
 from faultpath.run.attempt import Done, attempt
+from faultpath.run.plan import SystemSpec, Treatment
+from faultpath.run.registry import load_system
+from faultpath.run.shown import SystemShown, system_shown
 from faultpath.system import FloorPlan, Metric, Pillar, Prism, System
 from faultpath.system.checks import check_system, library_of, paths_of
 

@@ -11,7 +11,8 @@ import pytest
 
 from faultpath.core import error_source as blame
 from faultpath.core.errors import UserError
-from faultpath.run import SystemSpec, load_system
+from faultpath.run.plan import SystemSpec
+from faultpath.run.registry import load_system
 
 ROOT = Path(__file__).resolve().parents[2]
 FILE = ROOT / "tests" / "toys" / "weighed.py"
@@ -47,7 +48,8 @@ def test_two_edits_within_a_second_are_two(tmp_path, edited):
         if file.name == edited:
             file.write_text(file.read_text().replace("= 'a'", "= 'b'"))
             os.utime(file, (1e9, 1e9))
-    code = "import sys; from faultpath.run import SystemSpec, load_system\n"
+    code = "import sys; from faultpath.run.plan import SystemSpec\n"
+    code += "from faultpath.run.registry import load_system\n"
     code += "print(load_system(SystemSpec(name=sys.argv[1])).fingerprint())"
     asked = [sys.executable, "-c", code, f"{tmp_path}/mine.py:create"]
     done = subprocess.run(asked, capture_output=True, text=True, check=True)

@@ -12,7 +12,7 @@ from faultpath.core.error_source import described
 from faultpath.core.results import Frozen
 from faultpath.core.validation_messages import Misfit, misfit_of
 from faultpath.faults import Fault, Scale
-from faultpath.run import Deliveries
+from faultpath.run.deliveries import Deliveries
 
 SRC = Path(__file__).resolve().parents[2] / "src" / "faultpath"
 

@@ -14,7 +14,7 @@ from faultpath.analyses.model import AuditResult
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
 from faultpath.run.received.question import JudgeQuestion
-from faultpath.run.received.trial import Received
+from faultpath.run.received.results import Received
 from faultpath.stats.estimate import BreakEven
 from faultpath.system.outcome import Status
 

@@ -5,8 +5,8 @@ import numpy as np
 from gymnasium.spaces import Box, Dict, Discrete
 
 from faultpath.loop import Module, Port
-from faultpath.run import Treatment
 from faultpath.run.attempt import taps_of
+from faultpath.run.plan import Treatment
 from faultpath.system import ComposedSystem, FunctionPlant
 from faultpath.system.gymnasium import GymnasiumPlant
 

@@ -11,9 +11,10 @@ from faultpath.core.errors import UserError
 from faultpath.faults import FaultText
 from faultpath.interface import Provenance
 from faultpath.report.terminal import trace_table
-from faultpath.run import SystemSpec, load_system
 from faultpath.run.check.tracing import trace_system
+from faultpath.run.plan import SystemSpec
 from faultpath.run.question import TraceQuestion
+from faultpath.run.registry import load_system
 
 DOCK = f"{ROOT / 'examples/dock.py'}:create"
 

@@ -8,8 +8,9 @@ import pytest
 
 from faultpath.core.error_source import location
 from faultpath.core.errors import SystemMistake
-from faultpath.run import SystemSpec, Treatment, load_system
 from faultpath.run.check.blocks import BlockSpec, run_block
+from faultpath.run.plan import SystemSpec, Treatment
+from faultpath.run.registry import load_system
 from faultpath.system import library_of
 
 OWN = Path(__file__).parents[2] / "src/faultpath/system/templates/numpy.py.txt"

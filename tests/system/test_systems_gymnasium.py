@@ -8,9 +8,9 @@ from gym_toys import SCENES, Keyed, Steer, Walk, fly, plant, system
 
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.loop import Port
-from faultpath.run import SystemSpec, Treatment
 from faultpath.run.check.blocks import BlockSpec, run_block
 from faultpath.run.code import system_code
+from faultpath.run.plan import SystemSpec, Treatment
 from faultpath.run.registry import load_parts
 from faultpath.run.store.signals import DRAWN
 from faultpath.system import ComposedSystem, writes

@@ -12,8 +12,8 @@ from faultpath import audit
 from faultpath.core.errors import SystemMistake
 from faultpath.faults import parse_fault
 from faultpath.loop import Batch, Inputs, NotDelivered, Port
-from faultpath.run import Treatment
 from faultpath.run.attempt import attempt
+from faultpath.run.plan import Treatment
 from faultpath.run.work.executor import Failed
 from faultpath.system import ComposedSystem, tapped, writes
 

@@ -9,7 +9,7 @@ from typing import Any, Literal, NamedTuple
 import yaml
 
 from faultpath.core.results import Frozen
-from faultpath.run import Group
+from faultpath.run.pairing import Group
 
 SYSTEM = "quadrotor"
 HELD_OUT = "held-out"

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from faultpath.faults import at_readers
-from faultpath.run import Plan, Row, SystemSpec, Treatment, Trials, load_system
 from faultpath.run.execution.runner import RunResult
+from faultpath.run.plan import Plan, Row, SystemSpec, Treatment
+from faultpath.run.registry import load_system
+from faultpath.run.trials import Trials
 from faultpath.run.work.executor import Progress
 from faultpath.system import System
 from faultpath_paper.cells import SYSTEM, Cell, Profile, Setting

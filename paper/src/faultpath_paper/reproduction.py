@@ -15,8 +15,8 @@ from faultpath.api.systems import LOCAL, check_executor, executor_of
 from faultpath.core.errors import Stopped, UserError
 from faultpath.core.files.atomic import write_text
 from faultpath.report.tables import markdown
-from faultpath.run.provenance import RunProvenance
-from faultpath.run.store.folder import AGAIN, DELIVERIES, unseal
+from faultpath.run.provenance import AGAIN, RunProvenance, unseal
+from faultpath.run.store.folder import DELIVERIES
 from faultpath.run.work.executor import Progress
 from faultpath_paper.answers import Reproduction
 from faultpath_paper.central import of_page

@@ -6,7 +6,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from faultpath.run import PairingRefused, Pairs, Trials, pair
+from faultpath.run.pairing import PairingRefused, Pairs, pair
+from faultpath.run.trials import Trials
 from faultpath.stats.contrast import Contrast
 from faultpath.stats.effects import success_rate
 from faultpath.stats.estimate import Estimate

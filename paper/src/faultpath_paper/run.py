@@ -10,18 +10,20 @@ from faultpath.core.files.atomic import write_text
 from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.plain import Misread, model_of
 from faultpath.report.tables import Table
-from faultpath.run import Deliveries, SystemSpec, Trials, load_system
 from faultpath.run.code import system_code
+from faultpath.run.deliveries import Deliveries
 from faultpath.run.execution.runner import RunResult
-from faultpath.run.provenance import RunProvenance
+from faultpath.run.plan import SystemSpec
+from faultpath.run.provenance import RunProvenance, unseal
+from faultpath.run.registry import load_system
 from faultpath.run.store.folder import (
     OUTCOMES,
     RunFolder,
     keyed,
     read_outcomes,
     read_regular,
-    unseal,
 )
+from faultpath.run.trials import Trials
 from faultpath.system import System
 from faultpath_paper.answers import Reproduction, Sweep
 from faultpath_paper.cells import HELD_OUT, PROFILES, SYSTEM, Profile

@@ -10,8 +10,7 @@ from typing_extensions import override
 from faultpath.faults import Address, Fault, Record, resolve
 from faultpath.loop import DeliveryListener, Reading, Tap
 from faultpath.plugin.recording import taps_of
-from faultpath.plugin.system import UserError
-from faultpath.run import Treatment
+from faultpath.plugin.system import Treatment, UserError
 from faultpath_quadrotor.estimators import ErrorStateFilter
 from faultpath_quadrotor.estimators.eskf import AT, Filtered
 from faultpath_quadrotor.estimators.protocol import STATE_SOURCES

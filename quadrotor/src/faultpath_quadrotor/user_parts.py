@@ -18,13 +18,13 @@ from torch import Tensor, nn
 
 from faultpath.plugin.system import (
     SystemMistake,
+    SystemSpec,
     explained,
     factory_root,
     listed,
     load_parts,
     located,
 )
-from faultpath.run import SystemSpec
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.estimators import Estimator
 from faultpath_quadrotor.estimators.protocol import SOURCES

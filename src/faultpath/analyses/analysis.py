@@ -5,9 +5,11 @@ from collections.abc import Generator
 from dataclasses import dataclass
 from typing import Any, ClassVar, Generic, TypeAlias, TypeVar
 
-from faultpath.run import Deliveries, Plan, Trials
+from faultpath.run.deliveries import Deliveries
 from faultpath.run.execution.state import Stop
+from faultpath.run.plan import Plan
 from faultpath.run.question import Request
+from faultpath.run.trials import Trials
 from faultpath.system.system import System
 
 Items = TypeVar("Items")

@@ -12,12 +12,12 @@ from faultpath.analyses.judging_table import Address, Key, table_of, units_of
 from faultpath.analyses.model import AS_RUN, CORRECT, SHARED, Condition, title_of, where
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
-from faultpath.run import Trials
 from faultpath.run.deliveries import unproven
 from faultpath.run.findings import ExtraTrials, Finding, MissingTrials, NoneFailed, SeveralTasks
 from faultpath.run.received.question import JudgeQuestion
-from faultpath.run.received.trial import NO_OUTCOME, Received
+from faultpath.run.received.results import NO_OUTCOME, Received
 from faultpath.run.store.tables import FIXED
+from faultpath.run.trials import Trials
 from faultpath.system.outcome import Metric, Status
 
 _ONE = "one module"

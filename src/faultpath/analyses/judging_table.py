@@ -8,7 +8,7 @@ from itertools import product
 from faultpath.core.errors import UserError
 from faultpath.run.question import FEWEST_TRAININGS
 from faultpath.run.received.question import JudgeQuestion
-from faultpath.run.received.trial import Received
+from faultpath.run.received.results import Received
 from faultpath.run.trials import Trial, Trials
 from faultpath.system.outcome import Outcome, Status, failed_outcome
 

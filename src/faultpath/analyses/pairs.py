@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 
 from faultpath.analyses.model import AuditResult
-from faultpath.run import Group, Trials, pair
-from faultpath.run.pairing import unlike
+from faultpath.run.pairing import Group, pair, unlike
+from faultpath.run.trials import Trials
 from faultpath.system.outcome import Outcome, Status
 
 MOST_SCENES = 1000

@@ -9,7 +9,7 @@ from faultpath.core.streams import generator
 from faultpath.core.text import unknown
 from faultpath.faults import Fault, at_readers, describe
 from faultpath.interface import module_of
-from faultpath.run import Row, Treatment
+from faultpath.run.plan import Row, Treatment
 from faultpath.run.question import RepairQuestion
 from faultpath.system.declared import Library, Variant
 from faultpath.system.system import System

@@ -30,11 +30,12 @@ from faultpath.core.text import counted
 from faultpath.faults import FaultText
 from faultpath.report.inputs import ReportInput
 from faultpath.report.sentences.findings import describe
-from faultpath.run import system_shown
 from faultpath.run.execution.runner import RunResult
 from faultpath.run.findings import Finding, Unrecorded, Unrepeated
+from faultpath.run.provenance import seal
 from faultpath.run.question import AuditCall
-from faultpath.run.store.folder import OUTCOMES, read_regular, seal
+from faultpath.run.shown import system_shown
+from faultpath.run.store.folder import OUTCOMES, read_regular
 from faultpath.run.store.signals import (
     SIGNALS,
     Signal,

@@ -16,11 +16,13 @@ from faultpath.core.files.parquet import Unreadable
 from faultpath.core.files.plain import Misread, model_of
 from faultpath.interface import Interface
 from faultpath.report.inputs import ReportInput
-from faultpath.run import Deliveries, SystemShown, Trials
-from faultpath.run.provenance import RunProvenance
-from faultpath.run.store.folder import AGAIN, DELIVERIES, OUTCOMES, TRACES, read_regular, unseal
+from faultpath.run.deliveries import Deliveries
+from faultpath.run.provenance import AGAIN, RunProvenance, unseal
+from faultpath.run.shown import SystemShown
+from faultpath.run.store.folder import DELIVERIES, OUTCOMES, TRACES, read_regular
 from faultpath.run.store.signals import SIGNALS, decode_signals
 from faultpath.run.store.tables import decode_outcomes, decode_traces
+from faultpath.run.trials import Trials
 from faultpath.system.outcome import Status
 
 RECORD, SYSTEM, MAP, SCAN = "record.json", "system.json", "map.json", "scan.json"

@@ -19,11 +19,10 @@ from faultpath.api.systems import Chosen, choose, executor_of
 from faultpath.core.errors import UserError
 from faultpath.core.text import counted, unknown
 from faultpath.report.sentences.findings import describe
-from faultpath.run import Plan, SystemSpec
 from faultpath.run.code import system_code
-from faultpath.run.execution.provenance import run_provenance
 from faultpath.run.execution.runner import Failure, RunResult, run_plan
-from faultpath.run.provenance import RunProvenance
+from faultpath.run.plan import Plan, SystemSpec
+from faultpath.run.provenance import RunProvenance, run_provenance
 from faultpath.run.question import Request, Running, ScanCall, UserQuestion, ask
 from faultpath.run.store.folder import keyed
 from faultpath.run.work.executor import Executor, Progress

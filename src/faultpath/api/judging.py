@@ -26,11 +26,11 @@ from faultpath.interface import Interface
 from faultpath.report.inputs import ReportInput
 from faultpath.report.sentences.findings import describe
 from faultpath.run.deliveries import Deliveries, RowDeliveries
-from faultpath.run.execution.provenance import amend, run_provenance
 from faultpath.run.execution.runner import RunResult
+from faultpath.run.provenance import amend, run_provenance
 from faultpath.run.question import ask
-from faultpath.run.received.files import read_results
 from faultpath.run.received.question import JudgeQuestion
+from faultpath.run.received.results import read_results
 from faultpath.run.shown import SystemShown, VariantShown
 from faultpath.run.store.folder import RunFolder
 from faultpath.run.work.processes import local

@@ -18,18 +18,18 @@ from faultpath.core.text import unknown
 from faultpath.core.trees import release
 from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
-from faultpath.run import Plan, SystemSpec, Treatment, Trials
 from faultpath.run.attempt import Done
 from faultpath.run.check.blocks import BlockSpec, RecordedBlock, run_blocks
 from faultpath.run.code import CodeState, named, system_code
 from faultpath.run.execution.dispatch import Built
-from faultpath.run.execution.provenance import amend, processor
 from faultpath.run.execution.recheck import deviation
 from faultpath.run.findings import Deviation
-from faultpath.run.provenance import RunProvenance
+from faultpath.run.plan import Plan, SystemSpec, Treatment
+from faultpath.run.provenance import RunProvenance, amend, processor
 from faultpath.run.question import AuditQuestion
 from faultpath.run.store.signals import SIGNALS, Signal, encode_signals
 from faultpath.run.store.tables import TrialAddress
+from faultpath.run.trials import Trials
 from faultpath.run.work.executor import Executor
 from faultpath.run.work.processes import local
 from faultpath.system.checks import library_of

@@ -28,8 +28,7 @@ from faultpath.report.inputs import ReportInput
 from faultpath.report.map import write_map
 from faultpath.report.scan import write_scan
 from faultpath.report.sentences.words import Words, words
-from faultpath.run.provenance import RunProvenance
-from faultpath.run.store.folder import AGAIN, unseal
+from faultpath.run.provenance import AGAIN, RunProvenance, unseal
 from faultpath.run.store.tables import encode_outcomes
 
 

@@ -9,10 +9,10 @@ from functools import cached_property
 from os import PathLike
 from typing import cast
 
-from faultpath import run
 from faultpath.core.errors import UserError
 from faultpath.core.text import extra, one_line
-from faultpath.run import SystemSpec
+from faultpath.run import registry
+from faultpath.run.plan import SystemSpec
 from faultpath.run.registry import factory_name, installed_systems
 from faultpath.run.work.executor import Executor
 from faultpath.run.work.processes import local
@@ -54,7 +54,7 @@ def load_system(
     that does not exist, and for a package that is missing.
     """
     spec = _spec(system, options or {})
-    built = run.load_system(spec)
+    built = registry.load_system(spec)
     vars(built)[_LOADED] = spec, dict(vars(built))
     return built
 
@@ -89,7 +89,7 @@ def choose(
             spec = None
     if spec is not None:
         spec = with_parts(spec, variants)
-        return Chosen(run.load_system(spec), spec)
+        return Chosen(registry.load_system(spec), spec)
     if workers or executor != LOCAL:
         idle = "workers" if workers else "executor"
         raise UserError(
@@ -138,7 +138,7 @@ def with_parts(spec: SystemSpec, variants: Sequence[str]) -> SystemSpec:
     `UserError` for a file without the name of what builds the part, or a comma in its path.
     """
     named = [name for name in variants if ":" in name or name.endswith(".py")]
-    if not named or _BRING not in {option.name for option in run.system_options(spec.name)}:
+    if not named or _BRING not in {option.name for option in registry.system_options(spec.name)}:
         return spec
     parts = [part for part in spec.options.get(_BRING, "").split(",") if part]
     for name in named:

@@ -148,7 +148,7 @@ def with_system_flags(
     flags = {part.partition("=")[0] for part in arguments if part.startswith("--")} - own
     if not arguments or arguments[0].startswith("-") or not (flags or helps):
         return verb
-    from faultpath.run import system_options
+    from faultpath.run.registry import system_options
 
     system, options = arguments[0], ()
     try:

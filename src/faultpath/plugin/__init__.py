@@ -1,4 +1,4 @@
-"""Names for packages with a system of their own, beyond `faultpath.loop`, `faultpath.run` etc.
+"""Names for packages with a system of their own, beyond `faultpath.loop`, `faultpath.system` etc.
 
 A package imports from the engine only what these modules and the public rooms list in `__all__`.
 

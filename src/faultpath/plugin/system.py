@@ -1,4 +1,5 @@
-"""For code that runs in a trial: errors, random numbers, the user's parts, files that it reads."""
+"""For code that runs in a trial or builds a system: errors, random numbers, the user's parts, files
+that it reads, and what a system is named and run by."""
 
 from faultpath.core.error_source import explained, located
 from faultpath.core.errors import Notice, Stopped, SystemMistake, UserError
@@ -8,7 +9,8 @@ from faultpath.core.results import Frozen
 from faultpath.core.streams import generator, key, words
 from faultpath.core.text import listed, one_line, unknown
 from faultpath.core.validation_messages import misfit_of
-from faultpath.run.registry import factory_root, load_parts
+from faultpath.run.plan import SystemSpec, Treatment
+from faultpath.run.registry import factory_root, load_parts, load_system
 from faultpath.run.work.executor import one_thread
 from faultpath.system.options import call
 
@@ -19,6 +21,8 @@ __all__ = [
     "Notice",
     "Stopped",
     "SystemMistake",
+    "SystemSpec",
+    "Treatment",
     "UserError",
     "call",
     "contents",
@@ -28,6 +32,7 @@ __all__ = [
     "key",
     "listed",
     "load_parts",
+    "load_system",
     "located",
     "misfit_of",
     "one_line",

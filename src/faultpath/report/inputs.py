@@ -3,10 +3,11 @@
 from dataclasses import dataclass, field
 
 from faultpath.analyses.model import AuditResult
-from faultpath.run import SystemShown, Trials
 from faultpath.run.provenance import RunProvenance
+from faultpath.run.shown import SystemShown
 from faultpath.run.store.signals import Signal, Signals
 from faultpath.run.store.tables import TrialAddress
+from faultpath.run.trials import Trials
 
 
 @dataclass(frozen=True)

@@ -1,21 +1,7 @@
 """Treatments run over identical scenes: plans, workers, the store, trials and their pairing.
 
-The names of `faultpath.run.public` load when one is first used: a question needs none of them.
+A `question` becomes a `plan` in `faultpath.analyses`. From there `execution.runner` reads from top
+to bottom: the plan's blocks (`plan.units_of`) go to workers (`execution.dispatch`, `work`), which
+make an `attempt` at each; what comes back is stored (`execution.state`, `store`), and assembled as
+one table of `trials`.
 """
-
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from faultpath.run.public import *  # noqa: F403 - for type checkers; `__all__` lists them
-
-
-def __getattr__(name: str) -> object:
-    import faultpath.run.public as public
-
-    return getattr(public, name)
-
-
-def __dir__() -> list[str]:
-    import faultpath.run.public as public
-
-    return public.__all__

@@ -109,9 +109,9 @@ def attempt(
 def _checked(system: System, scenes: Sequence[str], returned: object) -> list[Outcome]:
     several = isinstance(returned, Iterable)
     outcomes = list(cast("Iterable[Any]", returned)) if several else []
-    odd = [type(outcome).__name__ for outcome in outcomes if not isinstance(outcome, Outcome)]
-    if odd or not several:
-        kind = f"{odd[0]} in place of an Outcome" if odd else type(returned).__name__
+    others = [type(outcome).__name__ for outcome in outcomes if not isinstance(outcome, Outcome)]
+    if others or not several:
+        kind = f"{others[0]} in place of an Outcome" if others else type(returned).__name__
         raise WrongOutcomes(
             f"run() of system {system.name!r} returned a {kind}: it returns a list with one "
             "Outcome for each scene, in order"

@@ -1,4 +1,4 @@
-"""The state of the code behind a result: one digest, and what it is made of."""
+"""The state of the code behind a result: one digest of sources, data and packages."""
 
 import inspect
 import json
@@ -24,7 +24,6 @@ from faultpath.system.declared import shown
 from faultpath.system.system import System
 
 _NAMED = 3
-_ENGINE = Root("faultpath")
 
 
 class CodeState(Frozen):
@@ -43,16 +42,15 @@ class CodeState(Frozen):
     @property
     def digest(self) -> str:
         """Hash of all of it."""
-        return _hash(self.model_dump(mode="json"))
+        content = json.dumps(self.model_dump(mode="json"), sort_keys=True)
+        return sha256(content.encode()).hexdigest()[:32]
 
     def changed(self, other: "CodeState") -> tuple[str, ...]:
-        """Say what `other` has otherwise: files, data files, packages, Python."""
+        """Return what differs in `other`: files, data files, packages, Python."""
         changes: list[str] = []
-        for mine, theirs in (
-            (self.files, other.files),
-            (self.data, other.data),
-            (self.packages, other.packages),
-        ):
+        for field in ("files", "data", "packages"):
+            mine: dict[str, str] = getattr(self, field)
+            theirs: dict[str, str] = getattr(other, field)
             changes += sorted(n for n in {*mine, *theirs} if mine.get(n) != theirs.get(n))
         changes += ["Python"] * (self.python != other.python)
         changes += ["what fingerprint() returns"] * (self.given != other.given)
@@ -76,7 +74,7 @@ class Code:
     imports: frozenset[str]
     """Installed packages that the sources import, by their names there."""
     main: Path | None = None
-    """The file of the first module."""
+    """File of the module that builds the system, where a path names it."""
 
 
 class Watch:
@@ -129,8 +127,8 @@ def read_code(
 
     Paths of data are taken from `base`. `UserError` for a file that cannot be read.
     """
-    roots, base = (*roots, _ENGINE), base or Path()
-    trees, imports = trees_of(roots)
+    base = base or Path()
+    trees, imports = trees_of((*roots, Root("faultpath")))
     sources: dict[str, str] = {}
     for tree in trees:
         names = {path.relative_to(tree.folder).as_posix(): d for path, d in tree.digests.items()}
@@ -152,19 +150,17 @@ def read_code(
                 f"cannot read {place} ({error.strerror}), which the system names among its data "
                 "files: put it there, or take it out of data_files"
             ) from error
-    state = CodeState(
-        files=sources,
-        data=digests,
-        packages=releases(imports),
-        python=platform.python_version(),
-        given=fingerprint,
-    )
     return Code(
-        state,
-        {path: digest for tree in trees for path, digest in tree.digests.items()},
-        files,
-        frozenset(imports),
-        roots[0].path,
+        state=CodeState(
+            files=sources,
+            data=digests,
+            packages=releases(imports),
+            python=platform.python_version(),
+            given=fingerprint,
+        ),
+        sources={path: digest for tree in trees for path, digest in tree.digests.items()},
+        data=files,
+        imports=frozenset(imports),
     )
 
 
@@ -206,7 +202,7 @@ def system_code(system: System, spec: SystemSpec) -> Code:
         base=root.path.parent if root and root.path else None,
         fingerprint=fingerprint,
     )
-    return code if root else replace(code, main=None)
+    return replace(code, main=root.path) if root else code
 
 
 def source_state(spec: SystemSpec) -> CodeState:
@@ -217,7 +213,3 @@ def source_state(spec: SystemSpec) -> CodeState:
 def _digest(path: Path) -> str:
     with opened(path, sys.maxsize) as file:
         return file_digest(file, "sha256").hexdigest()
-
-
-def _hash(content: object) -> str:
-    return sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:32]

@@ -1,5 +1,4 @@
-"""Deliveries of the taps in every group of trials, and what they and the trials show of a system's
-declarations."""
+"""Deliveries of the taps, and what they and the trials show of a system's declarations."""
 
 from collections.abc import Iterable, Mapping
 from typing import Literal, Self, TypeAlias
@@ -30,7 +29,7 @@ class Deliveries(Result):
     format: Literal[2] = 2
     rows: tuple[RowDeliveries, ...] = ()
     findings: tuple[Finding, ...] = ()
-    """What a reader of the run's results has to know."""
+    """Findings that a reader of the run's results has to know."""
 
     @classmethod
     def of(
@@ -46,18 +45,15 @@ class Deliveries(Result):
         """
         rows = tuple(
             RowDeliveries(
-                variant=r.variant,
-                condition=r.condition,
-                seed=r.seed,
-                taps=treatments.get((r.treatment.key(), r.scenes), ()),
+                variant=row.variant,
+                condition=row.condition,
+                seed=row.seed,
+                taps=treatments.get((row.treatment.key(), row.scenes), ()),
             )
-            for r in plan.rows
+            for row in plan.rows
         )
-        reads = [(row.variant, tap) for row in rows for tap in row.taps]
-        return cls(
-            rows=rows,
-            findings=(*findings, *unread(reads), *unproven(trials.met())),
-        )
+        reads = ((row.variant, tap) for row in rows for tap in row.taps)
+        return cls(rows=rows, findings=(*findings, *unread(reads), *unproven(trials.met())))
 
     def at(self, variant: str, condition: str) -> tuple[TapCount, ...]:
         """Return the taps of a variant under a condition, all seeds together; `KeyError` without
@@ -89,9 +85,8 @@ def unproven(met: Iterable[tuple[str, tuple[str, ...]]]) -> tuple[Unproven, ...]
 
     `met` are scenes of trials with the hashes that these carry.
     """
-    hashes_by_scene = set(met)
-    scenes = {scene for scene, _ in hashes_by_scene}
-    hashes = {of for _, of in hashes_by_scene}
+    pairs = set(met)
+    scenes, hashes = {scene for scene, _ in pairs}, {hashes for _, hashes in pairs}
     if len(scenes) < 2 or len(hashes) > 1:
         return ()
     return (Unproven(scenes=len(scenes), hashes=hashes.pop()),)

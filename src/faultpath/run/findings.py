@@ -1,4 +1,4 @@
-"""What was found in the trials of a run that a reader of its results has to know, as data.
+"""Findings in the trials of a run that a reader of its results has to know, as data.
 
 `faultpath.report.sentences.findings` says them. The few kinds that `faultpath check` and errors of
 a run name too have their words here, as `str`.
@@ -11,15 +11,10 @@ from pydantic import Field
 
 from faultpath.core.results import Result
 from faultpath.core.text import counted
+from faultpath.run.trials import HASHES
 
-HASHED = {
-    "initial_hash": "initial states",
-    "disturbance_hash": "disturbances",
-    "planner_noise_hash": "planner noise",
-}
-"""What each hash of a trial's conditions is of."""
 Unit: TypeAlias = Literal["scene", "task"]
-"""What counts as one in results of other tools: a scene, or a task with all of its scenes."""
+"""Unit that counts as one in results of other tools: a scene, or a task with all its scenes."""
 
 
 class Deviation(Result):
@@ -30,17 +25,15 @@ class Deviation(Result):
     raised: str = ""
     """Error that it raised; likewise."""
     scenes: tuple[str, ...]
-    """Those that came out otherwise."""
+    """Scenes that differ."""
     of: int
     """Scenes that ran again."""
     ended: int = 0
     """Scenes that ended in another status."""
     gaps: tuple[tuple[str, float | None], ...] = ()
-    """Each part of an outcome that differs, with the largest difference; `None` where it is no
-    number."""
+    """Parts of an outcome that differ, with the largest difference; `None` for no number."""
 
     def __str__(self) -> str:
-        """Return the difference as the end of a sentence."""
         if self.died:
             return f"could not be run again ({self.died}), which differs"
         if self.raised:
@@ -97,10 +90,9 @@ class Unpaired(Result):
         return tuple(pair.model_copy(update={"others": len(pairs) - 1}) for pair in pairs[:1])
 
     def __str__(self) -> str:
-        """Return a sentence that counts the pairs and shows the first."""
         one, two = (f"{variant} under {under}" for variant, under in (self.first, self.second))
         hashes = "; ".join(f"{name} {a[:8]!r} and {b[:8]!r}" for name, a, b in self.differences)
-        what = " and ".join(HASHED[name] for name, _, _ in self.differences)
+        what = " and ".join(HASHES[name] for name, _, _ in self.differences)
         others = f"; so do those of {counted(self.others, 'other pair')}" if self.others else ""
         return (
             f"{one} and {two} are no pair in scene {self.scene!r} (seed {self.seed}): their {what} "
@@ -116,7 +108,6 @@ class Unproven(Result):
     hashes: tuple[str, ...]
 
     def __str__(self) -> str:
-        """Return what is wrong, and what to do."""
         return (
             f"All {self.scenes} scenes carry the same hashes of initial state, disturbance and "
             f"planner noise ({', '.join(map(repr, self.hashes))}), so nothing proves that two "
@@ -133,7 +124,6 @@ class Unread(Result):
     reader: str
 
     def __str__(self) -> str:
-        """Return what is wrong, and what to do."""
         return (
             f"Variant '{self.variant}' declares that {self.reader} reads '{self.channel}', but it "
             "never did: take it out of the variant's readers, or deliver the channel to it."
@@ -148,7 +138,7 @@ class RaisedTogether(Result):
     of: int
     """Blocks of the run."""
     error: str
-    """Of the first."""
+    """Error of the first."""
 
 
 class Unrecorded(Result):
@@ -166,7 +156,7 @@ class Unrepeated(Result):
     of: int
     """Trials that ran again."""
     variant: str
-    """Of the first, as all that follows."""
+    """Variant of the first; so is all that follows."""
     condition: str
     scene: str
     deviation: Deviation

@@ -1,4 +1,4 @@
-"""Which files a process opens to read, as far as Python opens them, while something watches."""
+"""Files that a process opens to read, as far as Python opens them."""
 
 import os
 import sys
@@ -19,7 +19,7 @@ _OTHERS = (
 _EVENTS = ("open", "sqlite3.connect")
 _LINUX_COARSE = 5  # CLOCK_REALTIME_COARSE of Linux, which `time` does not name
 _watching: list[tuple[set[str], set[str]]] = []
-"""Files opened to be read and files opened to be made, for each who watches."""
+"""Files opened to be read and files opened to be written, for each `reads` that is open."""
 
 
 @contextmanager
@@ -30,11 +30,11 @@ def reads() -> Generator[set[str]]:
     """
     _hook()
     read, written, began = set[str](), set[str](), _file_time_ns()
-    _watching.append(mine := (read, written))
+    _watching.append(watcher := (read, written))
     try:
         yield read
     finally:
-        _watching[:] = (watcher for watcher in _watching if watcher is not mine)
+        _watching[:] = (other for other in _watching if other is not watcher)
         paths = {os.path.realpath(path) for path in read - written}
         read.clear()
         ended = time.time_ns()

@@ -1,6 +1,6 @@
-"""Two groups of trials over the same scenes; a pair that met different conditions is void."""
+"""Two groups of trials, paired scene by scene and seed by seed."""
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import compress
@@ -41,10 +41,7 @@ class Group:
 
 @dataclass(frozen=True, eq=False)
 class Pairs:
-    """Trials of two groups, scene by scene and seed by seed.
-
-    A pair is void where a trial failed, or where the two met different conditions.
-    """
+    """Trials of two groups, scene by scene and seed by seed."""
 
     trials: Trials
     seeds: tuple[int, ...]
@@ -52,9 +49,10 @@ class Pairs:
     rows: tuple[Rows, Rows]
     """Those of the first and of the second group, `[seeds, scenes]`."""
     void: Bools
-    """`[seeds, scenes]`."""
+    """`[seeds, scenes]`: pairs that do not count, since a trial is missing or the two met different
+    conditions."""
     unpaired: tuple[Unpaired, ...] = ()
-    """Those that met different conditions, which are void too."""
+    """Those that met different conditions."""
 
     @cached_property
     def success(self) -> tuple[Floats, Floats]:
@@ -84,7 +82,7 @@ class Pairs:
         return first, second
 
     def whole(self) -> "Pairs":
-        """Return the pairs of the scenes that have no void one: every seed over the same scenes."""
+        """Return the pairs of the scenes in which all count: every seed over the same scenes."""
         return self._at(np.asarray(~self.void.any(axis=0), dtype=np.bool_))
 
     def only(self, scenes: Collection[str]) -> "Pairs":
@@ -115,46 +113,43 @@ def pair(
     that draw differently, by number of candidates for one: their noise is not compared. Nor is it
     where one of them was run once, with another seed.
     Two trials that differ in their initial state, their disturbance or the planner's noise are no
-    pair: it is void and among the `unpaired`. `PairingRefused` when the groups do not hold the
-    same seeds and scenes.
+    pair and among the `unpaired`. `PairingRefused` when the groups do not hold the same seeds and
+    scenes.
     """
     seeds = trials.seeds_of(first.variant, first.condition) if seeds is None else tuple(seeds)
     if not seeds:
         raise PairingRefused(f"cannot pair {first} with {second}: the table has no trial of it")
     one, two = (_rows(trials, group, seeds) for group in (first, second))
-    planned = np.stack([one >= 0, two >= 0])
-    some: list[bool] = np.asarray(planned.any(axis=(0, 1))).tolist()
-    odd: list[bool] = np.asarray((~planned).any(axis=(0, 1))).tolist()
-    for scene, there, lacking in zip(trials.scenes, some, odd, strict=True):
-        if there and lacking:
-            raise PairingRefused(
-                f"cannot pair {first} with {second}: they ran in different scenes, for example "
-                f"{scene.id!r}"
-            )
-    one, two = one[:, some], two[:, some]
-    scenes = tuple(compress(trials.scenes, some))
+    planned = np.concatenate([one >= 0, two >= 0])
+    chosen: Bools = planned.any(axis=0)
+    if (partly := chosen & ~planned.all(axis=0)).any():
+        raise PairingRefused(
+            f"cannot pair {first} with {second}: they ran in different scenes, for example "
+            f"{trials.scenes[int(partly.argmax())].id!r}"
+        )
+    one, two = one[:, chosen], two[:, chosen]
+    scenes = tuple(compress(trials.scenes, chosen))
     void = trials.failed[one] | trials.failed[two]
     unpaired: list[Unpaired] = []
-    for at, seed in enumerate(seeds):
+    for place, seed in enumerate(seeds):
         drawn_alike = not other_noise and first.at(seed) == second.at(seed)
         hashes = [name for name in HASHES if name != "planner_noise_hash" or drawn_alike]
-        unlike = np.any([trials.texts[h][one[at]] != trials.texts[h][two[at]] for h in hashes], 0)
-        unlike_scenes: list[int] = np.flatnonzero(unlike & ~void[at]).tolist()
+        rows = np.stack([one[place], two[place]])
+        values = {name: trials.texts[name][rows] for name in hashes}
+        unlike = np.any([both[0] != both[1] for both in values.values()], axis=0) & ~void[place]
+        unlike_scenes: list[int] = np.flatnonzero(unlike).tolist()
         for scene in unlike_scenes:
-            values = (
-                (h, *(str(trials.texts[h][rows[at, scene]]) for rows in (one, two))) for h in hashes
-            )
-            differences = tuple((h, a, b) for h, a, b in values if a != b)
+            hashed = ((name, *map(str, both[:, scene])) for name, both in values.items())
             unpaired.append(
                 Unpaired(
                     first=(first.variant, first.condition),
                     second=(second.variant, second.condition),
                     scene=scenes[scene].id,
                     seed=seed,
-                    differences=differences,
+                    differences=tuple((name, a, b) for name, a, b in hashed if a != b),
                 )
             )
-            void[at, scene] = True
+        void[place] |= unlike
     return Pairs(trials, tuple(seeds), scenes, (one, two), void, tuple(unpaired))
 
 
@@ -167,11 +162,9 @@ def _rows(trials: Trials, group: Group, seeds: Sequence[int]) -> Rows:
         ) from None
 
 
-def unlike(
-    a: Outcome, b: Outcome, hashes: Iterable[str] = HASHES
-) -> tuple[tuple[str, str, str], ...]:
+def unlike(a: Outcome, b: Outcome) -> tuple[tuple[str, str, str], ...]:
     """Return the name of each hash in which two trials differ, and both of its values."""
     if a.failed or b.failed:
-        return ()  # a failed trial has no conditions to compare; its pair is void anyway
-    values = ((name, getattr(a, name), getattr(b, name)) for name in hashes)
+        return ()  # a failed trial has no conditions to compare; its pair does not count anyway
+    values = ((name, getattr(a, name), getattr(b, name)) for name in HASHES)
     return tuple((name, one, two) for name, one, two in values if one != two)

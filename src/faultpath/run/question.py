@@ -19,7 +19,7 @@ from faultpath.run.texts import LARGEST, Names, Place, Seeds, Sizes, several
 
 Generalise = Literal["scenes", "models"]
 FEWEST_TRAININGS = 5
-"""With fewer nothing is said of newly trained models: their spread is not known."""
+"""Trainings below which newly trained models get no interval: their spread is not known."""
 GENERALISE = (
     "What intervals are valid for: new scenes, or newly trained models too, one a seed "
     f"({FEWEST_TRAININGS} or more). The latter takes trainings to spread evenly around their mean: "
@@ -41,8 +41,8 @@ class Flag:
 
 
 ADVANCED = "Advanced"
-"""Heading of what few ask for; it stands last in a help."""
-Scenes = Annotated[str, Field(description="Library of scenes, by name or file.")]
+"""Heading of rarely used options; it stands last in a help."""
+LibraryName = Annotated[str, Field(description="Library of scenes, by name or file.")]
 
 
 class UserQuestion(Frozen, strict=True, allow_inf_nan=False):
@@ -56,7 +56,7 @@ _Question = TypeVar("_Question", bound=UserQuestion)
 
 
 def ask(model: type[_Question], fields: Mapping[str, object], command: bool = False) -> _Question:
-    """Return what is asked; `UserError` for what does not fit, by its flag if `command`."""
+    """Return the question; `UserError` for a field that does not fit, by its flag if `command`."""
     try:
         return model.model_validate(dict(fields))
     except ValidationError as error:
@@ -79,7 +79,7 @@ def flag(model: type[UserQuestion], name: str) -> str:
 class Request(UserQuestion):
     """Question about a system."""
 
-    library: Scenes = "selection"
+    library: LibraryName = "selection"
     options: Annotated[
         dict[str, Any],
         BeforeValidator(lambda options: {} if options is None else options),
@@ -138,7 +138,7 @@ class RepairQuestion(Request):
         description="Variant to compare with, or your file.py:factory where the system takes one."
     )
     repair: str = Field(description="Variant that is meant to help, named likewise.")
-    library: Scenes = "held-out"
+    library: LibraryName = "held-out"
     scenes: int | None = Field(default=None, description="Run only the first N scenes.")
     seeds: Seeds = (0,)
 
@@ -269,7 +269,7 @@ class ScanQuestion(Request):
         description="Size of a source's error in place of the declared one, for both signs: "
         "`gain:scale=1.2`, `gain:offset=0.1@observer`, `calibration=0.1`.",
     )
-    library: Scenes = "selection"
+    library: LibraryName = "selection"
     scenes: int | None = Field(
         default=None,
         description="Run only the first N scenes: 50 in the first stage, the others in the second; "

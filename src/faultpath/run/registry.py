@@ -31,9 +31,6 @@ from faultpath.system.checks import check_system
 from faultpath.system.options import Factory, Option, builds, call, options_of
 from faultpath.system.system import System
 
-GROUP = "faultpath.systems"
-"""Entry points of installed distributions: the name of a system to `module:factory`."""
-
 _opened: dict[tuple[str, int], set[str]] = {}
 """By file and its time: what lies beside it is imported once, and what is opened then counts."""
 _EXTRAS = frozenset({"torch", "gymnasium"})
@@ -41,8 +38,8 @@ _EXTRAS = frozenset({"torch", "gymnasium"})
 
 @cache
 def installed_systems() -> dict[str, str]:
-    """Return the factories that distributions declare, by the name of their system."""
-    return {entry_point.name: entry_point.value for entry_point in entry_points(group=GROUP)}
+    """Return the factories that distributions declare, `module:factory` by the system's name."""
+    return {entry.name: entry.value for entry in entry_points(group="faultpath.systems")}
 
 
 def load_system(spec: SystemSpec) -> System:
@@ -241,8 +238,8 @@ def _check_own(start: Path | str, folder: Path) -> None:
     """
     names = imported([start]) if isinstance(start, Path) else {start.partition(".")[0]}
     seen = set[str]()
-    while waiting := sorted(names - seen):
-        seen.add(name := waiting[0])
+    while unseen := sorted(names - seen):
+        seen.add(name := unseen[0])
         files = (folder / name / "__init__.py", folder / f"{name}.py")
         own = next((file for file in files if file.is_file()), None)
         if own is None or ours(name) or not (origins := package_paths(name)):

@@ -18,14 +18,14 @@ _MOST = 1000
 
 
 def several(value: object) -> tuple[object, ...]:
-    """Return what may be given by itself, or several of it."""
+    """Return a sequence as it is, and any other value as the only one of several."""
     if isinstance(value, Sequence) and not isinstance(value, str):
         return tuple(cast("Sequence[object]", value))
     return (value,)
 
 
 def read_seeds(value: object) -> object:
-    """Return seeds, from `0,1,2` and `0..2` too; `ValueError` for what are none."""
+    """Return seeds, from `0,1,2` and `0..2` too; `ValueError` for anything else."""
     seeds = several(value)
     if isinstance(value, str):
         parts = [_SEEDS.fullmatch(part.strip()) for part in value.split(",")]
@@ -52,7 +52,7 @@ def _seed(text: str) -> int:
 
 
 def read_sizes(value: object) -> object:
-    """Return numbers, from `0.1,0.2` too; `ValueError` for what are none."""
+    """Return numbers, from `0.1,0.2` too; `ValueError` for anything else."""
     if not isinstance(value, str):
         return several(value)
     try:
@@ -64,7 +64,7 @@ def read_sizes(value: object) -> object:
 
 
 def read_names(value: object) -> object:
-    """Return names, from `a,b` too; `ValueError` for an empty one or one given twice."""
+    """Return names, from `a,b` too; `ValueError` for an empty or a repeated one."""
     if not isinstance(value, str):
         return several(value)
     names = tuple(part.strip() for part in value.split(","))

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import compress
 from typing import Self
 
 import numpy as np
@@ -18,8 +19,13 @@ Rows = NDArray[np.int64]
 """Rows of trials; -1 where none was planned."""
 
 STATUSES = tuple(Status)
-HASHES: tuple[str, ...] = ("initial_hash", "disturbance_hash", "planner_noise_hash")
-"""Two trials are a pair only where these agree."""
+HASHES = {
+    "initial_hash": "initial states",
+    "disturbance_hash": "disturbances",
+    "planner_noise_hash": "planner noise",
+}
+"""Hashes of what a trial meets, each with what it is of: two trials are a pair only where these
+agree."""
 TEXTS = (*HASHES, "trajectory_hash")
 _MOST_CELLS, _MOST_EMPTY = 10_000_000, 50
 """Cells of an index, and cells for each trial in a larger one: no plan is as sparse as that, and a
@@ -70,28 +76,26 @@ class Trials:
 
         `ValueError` where two stand in one place, and for a plan that is almost all empty.
         """
-        every = tuple(trials)
-        outcomes = [trial.outcome for trial in every]
+        rows = tuple(trials)
+        outcomes = [trial.outcome for trial in rows]
         refs: dict[str, SceneRef] = {}
-        for trial in every:
+        for trial in rows:
             if (scene := trial.outcome.scene) not in refs:
                 refs[scene] = SceneRef(scene, trial.scene_index, trial.topology)
         scenes = tuple(sorted(refs.values(), key=lambda scene: scene.index))
-        variants = tuple(dict.fromkeys(trial.variant for trial in every))
-        conditions = tuple(dict.fromkeys(trial.condition for trial in every))
-        seeds = tuple(dict.fromkeys(trial.seed for trial in every))
-        labels = (variants, conditions, seeds, [scene.id for scene in scenes])
-        places = [{label: place for place, label in enumerate(axis)} for axis in labels]
-        keys = ((t.variant, t.condition, t.seed, t.outcome.scene) for t in every)
-        at = np.array(
-            [[axis[key] for axis, key in zip(places, of, strict=True)] for of in keys], np.int64
-        ).reshape(-1, 4)
-        shape = [len(axis) for axis in labels]
-        if math.prod(shape) > max(_MOST_CELLS, len(every) * _MOST_EMPTY):
+        variants = tuple(dict.fromkeys(trial.variant for trial in rows))
+        conditions = tuple(dict.fromkeys(trial.condition for trial in rows))
+        seeds = tuple(dict.fromkeys(trial.seed for trial in rows))
+        axes = (variants, conditions, seeds, [scene.id for scene in scenes])
+        shape = [len(axis) for axis in axes]
+        if math.prod(shape) > max(_MOST_CELLS, len(rows) * _MOST_EMPTY):
             raise ValueError("hardly any variant has a trial under the same condition and seed")
+        places = [{label: place for place, label in enumerate(axis)} for axis in axes]
+        labels = ((t.variant, t.condition, t.seed, t.outcome.scene) for t in rows)
+        cells = [[axis[name] for axis, name in zip(places, of, strict=True)] for of in labels]
         index = np.full(shape, -1, np.int64)
-        index[tuple(at.T)] = np.arange(len(every))
-        if int((index >= 0).sum()) != len(every):
+        index[tuple(np.array(cells, np.int64).reshape(-1, 4).T)] = np.arange(len(rows))
+        if int((index >= 0).sum()) != len(rows):
             raise ValueError("two trials have the same variant, condition, seed and scene")
         names = dict.fromkeys(name for outcome in outcomes for name in outcome.metrics)
         return cls(
@@ -158,8 +162,8 @@ class Trials:
     def outcomes(self, variant: str, condition: str, seed: int) -> list[Outcome]:
         """Return the outcomes of a variant under a condition with one seed, by scene."""
         rows: list[int] = self.rows(variant, condition, [seed])[0].tolist()
-        every = zip(rows, self.scenes, strict=True)
-        return [self.outcome(row, scene.id) for row, scene in every if row >= 0]
+        places = zip(rows, self.scenes, strict=True)
+        return [self.outcome(row, scene.id) for row, scene in places if row >= 0]
 
     def has(self, status: Status) -> Bools:
         """Return `[rows]` whether a trial ended so."""
@@ -181,17 +185,17 @@ class Trials:
     def seeds_of(self, variant: str, condition: str) -> tuple[int, ...]:
         """Return the seeds of a variant under a condition, in the order of the plan."""
         planned: list[bool] = np.any(self.planned(variant, condition) >= 0, axis=1).tolist()
-        return tuple(seed for seed, there in zip(self.seeds, planned, strict=True) if there)
+        return tuple(compress(self.seeds, planned))
 
     def rows(self, variant: str, condition: str, seeds: Sequence[int] | None = None) -> Rows:
         """Return the rows `[seeds, scenes]` of a variant under a condition, -1 where none is.
 
         `seeds` are those that were planned there when left out. `KeyError` for one without trials.
         """
-        there = self.seeds_of(variant, condition)
-        chosen = there if seeds is None else seeds
+        planned = self.seeds_of(variant, condition)
+        chosen = planned if seeds is None else seeds
         for seed in chosen:
-            if seed not in there:
+            if seed not in planned:
                 raise KeyError(seed)
         return self.planned(variant, condition)[[self.seeds.index(seed) for seed in chosen]]
 

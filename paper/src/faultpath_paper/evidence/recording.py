@@ -14,8 +14,9 @@ from faultpath_quadrotor.training.trajectories import record_flights
 from faultpath_quadrotor.training.windows import HISTORY, Windows, cut, places
 from numpy.typing import NDArray
 
-from faultpath.run import SystemSpec, load_system
 from faultpath.run.code import system_code
+from faultpath.run.plan import SystemSpec
+from faultpath.run.registry import load_system
 from faultpath_paper.evidence.table import Recording
 
 BLOCK = 25

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TypeAlias
 
-from faultpath.run import Pairs
+from faultpath.run.pairing import Pairs
 from faultpath.stats.contrast import Contrast, weighted_sum
 from faultpath.stats.decisions import with_test
 from faultpath.stats.effects import mean_effect, median_effect, success_effect, success_rate

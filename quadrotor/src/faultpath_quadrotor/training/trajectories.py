@@ -16,7 +16,7 @@ import torch
 from faultpath.loop import Batch
 from faultpath.plugin.data import system_code
 from faultpath.plugin.recording import taps_of
-from faultpath.run import SystemSpec, Treatment, load_system
+from faultpath.plugin.system import SystemSpec, Treatment, load_system
 from faultpath_quadrotor import native
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.plant.module import ACTION, Flying

@@ -21,8 +21,8 @@ from faultpath.core.error_source import described
 from faultpath.core.errors import Notice
 from faultpath.faults import Fault
 from faultpath.loop import Batch, Inputs, Loop, Plant, Progress, Reading, Taps
-from faultpath.run import Treatment
 from faultpath.run.attempt import taps_of
+from faultpath.run.plan import Treatment
 from faultpath.system.loop_system import LoopSystem
 
 Floats: TypeAlias = NDArray[np.float64]

@@ -23,12 +23,12 @@ from faultpath.loop import (
     TapCount,
     UndeclaredReader,
 )
-from faultpath.run import Treatment
 from faultpath.run.attempt import Done, Raised, attempt
 from faultpath.run.check.reads import Enough, Read, ReadLog
 from faultpath.run.check.recording import Recording, signals
 from faultpath.run.execution.dispatch import Built, UndeclaredFile, dispatch
 from faultpath.run.pairing import unlike
+from faultpath.run.plan import Treatment
 from faultpath.run.store.signals import DRAWN, Signal
 from faultpath.run.work.executor import Executor, Failed, Lost
 from faultpath.system.episodes import EpisodePlant

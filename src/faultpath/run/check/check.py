@@ -11,13 +11,13 @@ from faultpath.core.results import Result
 from faultpath.core.text import unknown
 from faultpath.faults import AnyIntervention, Erase, Fault, Offset, Scale, resolve
 from faultpath.faults import Sequence as InTurn
-from faultpath.run import SystemSpec, Treatment
 from faultpath.run.check.blocks import BlockSpec, RecordedBlock, coarsest, run_blocks
 from faultpath.run.check.delivery import HELD, MOVED, reader_at, unanswered
 from faultpath.run.check.judging import judged
 from faultpath.run.check.reads import Read
 from faultpath.run.check.seen import UNDER, Check, Seen
 from faultpath.run.execution.dispatch import Built
+from faultpath.run.plan import SystemSpec, Treatment
 from faultpath.run.question import CheckQuestion
 from faultpath.run.work.processes import local
 from faultpath.system.checks import library_of

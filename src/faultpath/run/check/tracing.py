@@ -8,10 +8,10 @@ from faultpath.core.results import Result
 from faultpath.core.text import unknown
 from faultpath.faults import describe, reaching
 from faultpath.interface import module_of
-from faultpath.run import SystemSpec, Treatment
 from faultpath.run.check.blocks import BlockSpec, run_block
 from faultpath.run.check.check import chosen_variants
 from faultpath.run.check.reads import Read
+from faultpath.run.plan import SystemSpec, Treatment
 from faultpath.run.question import TraceQuestion
 from faultpath.system.checks import library_of
 from faultpath.system.loop_system import LoopSystem

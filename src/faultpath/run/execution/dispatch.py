@@ -139,11 +139,11 @@ def dispatch(
     limit_s: float | None = None,
     report: Callable[[], None] = lambda: None,
 ) -> None:
-    """Run what `take` returns for a worker, until it returns nothing and all is settled.
+    """Run what `take` returns for a worker, until it returns nothing and all tasks have ended.
 
     `work`, a function of a module, gets the system and the task. `handle_reply` gets what it
     returned, `Failed` with an error that it raised, or `Lost` where a worker was lost over the task
-    twice or stopped at the time limit: as asked, as the system says, or an hour.
+    twice or stopped at the time limit: `limit_s`, else what the system says, else an hour.
     """
     if limit_s is not None and not (math.isfinite(limit_s) and limit_s > 0):
         raise UserError(f"the time limit is {limit_s:g} s: give a number of seconds above 0")
@@ -152,38 +152,37 @@ def dispatch(
     if executor.count:
         call = partial(_elsewhere, built.job, work)
     running: dict[int, _Running[T]] = {}
-    again: list[tuple[T, bool]] = []
+    lost: list[tuple[T, bool]] = []
     """Tasks whose worker was lost: one loss is nobody's fault, and a second one is the task's."""
     false_starts = 0
     while True:
         for worker in executor.free():
-            task, tried = again.pop(0) if again else (take(worker), False)
+            task, tried = lost.pop(0) if lost else (take(worker), False)
             if task is not None:
-                begun = running[worker] = _Running(task, tried, time.monotonic())
-                executor.submit(worker, partial(call, task), begun.start)
+                run = running[worker] = _Running(task, tried, time.monotonic())
+                executor.submit(worker, partial(call, task), run.start)
         if not running:
             return
         for worker, end in executor.completions(_TICK_S):
-            ended = running.pop(worker)
-            false_starts = 0 if ended.started else false_starts
+            run = running.pop(worker)
+            false_starts = 0 if run.started else false_starts
             if isinstance(end, Returned):
-                handle_reply(ended.task, end.value)
-            elif isinstance(end, Failed) or (ended.started and ended.tried):
-                handle_reply(ended.task, end)
-            elif ended.started:
-                again.append((ended.task, True))
+                handle_reply(run.task, end.value)
+            elif isinstance(end, Failed) or (run.started and run.tried):
+                handle_reply(run.task, end)
+            elif run.started:
+                lost.append((run.task, True))
             else:
                 false_starts += 1
                 if false_starts > _FALSE_STARTS:
                     raise WorkerLost(f"worker processes failed to start: {end.how}")
-                again.append((ended.task, ended.tried))
+                lost.append((run.task, run.tried))
         # After the completions, so that a task that has just ended was in time.
-        for worker, attempt in tuple(running.items()):
-            if attempt.overran(limit_s, built.job.system.name):
+        for worker, run in tuple(running.items()):
+            if run.overran(limit_s, built.job.system.name):
                 executor.cancel(worker)
                 del running[worker]
-                stopped = Lost(f"it was stopped at the time limit of {limit_s:g} s")
-                handle_reply(attempt.task, stopped)
+                handle_reply(run.task, Lost(f"it was stopped at the time limit of {limit_s:g} s"))
         report()
 
 

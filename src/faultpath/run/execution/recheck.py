@@ -21,8 +21,8 @@ from faultpath.core.files.plain import Misread, model_of
 from faultpath.core.results import Frozen
 from faultpath.loop import WrittenTo
 from faultpath.run.attempt import Done, Reply
-from faultpath.run.execution.schedule import Task, Unit
 from faultpath.run.findings import Deviation, Recheck
+from faultpath.run.plan import Task, Unit
 from faultpath.run.store.folder import RunFolder
 from faultpath.run.work.executor import Failed, Lost
 from faultpath.system.outcome import Outcome
@@ -31,7 +31,6 @@ SAMPLE = 4
 """Scenes of a unit that run again."""
 _OF_EACH = 4
 """Blocks of each variant that are repeated, under different conditions."""
-_TRAJECTORY = "trajectory_hash"
 
 
 def deviation(first: Sequence[Outcome], reply: Reply) -> Deviation | None:
@@ -39,25 +38,24 @@ def deviation(first: Sequence[Outcome], reply: Reply) -> Deviation | None:
 
     Trajectories count where both runs have a hash of them.
     """
-    scenes, of = tuple(outcome.scene for outcome in first), len(first)
+    scenes = tuple(outcome.scene for outcome in first)
     if isinstance(reply, Lost):
-        return Deviation(died=reply.how, scenes=scenes, of=of)
+        return Deviation(died=reply.how, scenes=scenes, of=len(scenes))
     if not isinstance(reply, Done):
-        return Deviation(raised=str(reply.error), scenes=scenes, of=of)
-    differences = _gaps(first, reply)
-    if not differences:
+        return Deviation(raised=str(reply.error), scenes=scenes, of=len(scenes))
+    gaps_by_scene = _gaps(first, reply)
+    if not gaps_by_scene:
         return None
-    names = dict.fromkeys(name for gaps in differences.values() for name in gaps)
-    most = {
-        name: max(gaps.get(name, 0.0) for gaps in differences.values())
-        for name in names
-        if name != "status"
-    }
+    largest: dict[str, float] = {}
+    for gaps in gaps_by_scene.values():
+        for name, gap in gaps.items():
+            largest[name] = max(largest.get(name, gap), gap)
+    largest.pop("status", None)
     return Deviation(
-        scenes=tuple(differences),
-        of=of,
-        ended=sum("status" in gaps for gaps in differences.values()),
-        gaps=tuple((name, gap if math.isfinite(gap) else None) for name, gap in most.items()),
+        scenes=tuple(gaps_by_scene),
+        of=len(scenes),
+        ended=sum("status" in gaps for gaps in gaps_by_scene.values()),
+        gaps=tuple((name, gap if math.isfinite(gap) else None) for name, gap in largest.items()),
     )
 
 
@@ -70,14 +68,11 @@ def _gaps(first: Sequence[Outcome], again: Done) -> dict[str, dict[str, float]]:
         for name in dict.fromkeys((*mine, *theirs)):
             a: Any = mine.get(name)
             b: Any = theirs.get(name)
-            if name in ("metrics", "error") or np.array_equal(a, b):
+            unhashed = name == "trajectory_hash" and not (a and b)
+            if name in ("metrics", "error") or unhashed or np.array_equal(a, b):
                 continue
-            if name == _TRAJECTORY and not (a and b):
-                continue
-            gap = math.inf
-            if isinstance(a, int | float) and isinstance(b, int | float):
-                gap = abs(a - b)
-            gaps.setdefault(one.scene, {})[name] = gap
+            numbers = isinstance(a, int | float) and isinstance(b, int | float)
+            gaps.setdefault(one.scene, {})[name] = abs(a - b) if numbers else math.inf
     return gaps
 
 
@@ -105,16 +100,11 @@ class Rechecks:
             (recheck.unit, recheck.why, recheck.scenes): recheck for recheck in kept.rechecks
         }
 
-    def tasks(self) -> tuple[Task, ...]:
-        """Return what is to run again; empty when nothing is left.
+    def tasks(self, sound: Sequence[Unit]) -> tuple[Task, ...]:
+        """Return what is to run again, of units without a failed trial; empty when nothing is left.
 
         It follows from the units' keys: the same run draws the same, whoever continues it.
         """
-        sound = [
-            unit
-            for unit in self._units
-            if not any(self._outcomes[unit.treatment_key, scene].failed for scene in unit.scenes)
-        ]
         if not sound:
             return ()
         # Not the first treatment of a block, where there are others: nothing ran before it from
@@ -127,17 +117,17 @@ class Rechecks:
         )
         scenes = unit.scenes
         if len(scenes) > SAMPLE:
-            by_lot = sorted(scenes[1:], key=lambda scene: _hash_order(unit.key, scene))[:SAMPLE]
-            scenes = tuple(scene for scene in scenes if scene in by_lot)
+            drawn = sorted(scenes[1:], key=lambda scene: _hash_order(unit.key, scene))[:SAMPLE]
+            scenes = tuple(scene for scene in scenes if scene in drawn)
         others = [candidate for candidate in sound if candidate is not unit] or [unit]
-        other = min(
+        guarded = min(
             others,
             key=lambda candidate: (len(candidate.scenes) == 1, _hash_order("guard", candidate.key)),
         )
-        alone = min(
-            other.scenes[1:] or other.scenes, key=lambda scene: _hash_order(other.key, scene)
+        scene = min(
+            guarded.scenes[1:] or guarded.scenes, key=lambda scene: _hash_order(guarded.key, scene)
         )
-        tasks = (Task(unit, scenes, recheck="sample"), Task(other, (alone,), recheck="guarded"))
+        tasks = (Task(unit, scenes, recheck="sample"), Task(guarded, (scene,), recheck="guarded"))
         return tuple(t for t in tasks if (t.unit.key, t.recheck, t.scenes) not in self._kept)
 
     def handle_reply(self, task: Task, reply: Reply) -> None:
@@ -171,11 +161,11 @@ class Rechecks:
     def of_this_run(self) -> tuple[Recheck, ...]:
         """Return what ran again of the units of this run."""
         keys = {unit.key for unit in self._units}
-        return tuple(shown for _, shown in sorted(self._kept.items()) if shown.unit in keys)
+        return tuple(recheck for _, recheck in sorted(self._kept.items()) if recheck.unit in keys)
 
     def findings(self) -> tuple[Recheck, ...]:
         """Return those of this run's units in which something was found."""
-        return tuple(shown for shown in self.of_this_run() if shown.wrote or shown.deviation)
+        return tuple(r for r in self.of_this_run() if r.wrote or r.deviation)
 
 
 def repeat(
@@ -191,22 +181,22 @@ def repeat(
     with the first block that differs.
     """
     tasks = [Task(unit, unit.scenes, recheck="sample") for unit in _sample(units)]
-    waiting = iter(tasks)
+    queue = iter(tasks)
 
     def handle_reply(task: Task, reply: Reply) -> None:
         if isinstance(reply, Failed):
             raise reply.error
         treatment = task.unit.treatment
         if differs := deviation(blocks[task.unit.key].outcomes, reply):
-            where = f"{treatment.describe()}, seed {treatment.seed}, {len(task.scenes)} scenes "
-            where += f"from {task.scenes[0]!r}"
             raise UserError(
                 f"{folder.path} holds a finished run, and what is here does not repeat it (changed "
-                f"since: {changed}): a block of {treatment.variant!r} ({where}) {differs}. "
+                f"since: {changed}): a block of {treatment.variant!r} ({treatment.describe()}, "
+                f"seed {treatment.seed}, {len(task.scenes)} scenes from {task.scenes[0]!r}) "
+                f"{differs}. "
                 "Nothing in the folder was changed: choose a new one."
             )
 
-    work(lambda worker: next(waiting, None), handle_reply)
+    work(lambda worker: next(queue, None), handle_reply)
     count = sum(len(task.scenes) for task in tasks)
     return (
         f"{folder.path} was finished before {changed} changed. {count} of its trials ran again and "
@@ -217,9 +207,9 @@ def repeat(
 def _sample(units: Sequence[Unit]) -> list[Unit]:
     """Return a few units of each variant, under as many conditions as that gives."""
     sample: list[Unit] = []
-    by_lot = sorted(units, key=lambda unit: _hash_order(unit.key))
+    drawn = sorted(units, key=lambda unit: _hash_order(unit.key))
     for variant in sorted({unit.treatment.variant for unit in units}):
-        of_variant = (unit for unit in by_lot if unit.treatment.variant == variant)
+        of_variant = (unit for unit in drawn if unit.treatment.variant == variant)
         conditions = {repr(unit.treatment.faults): unit for unit in of_variant}
         sample += list(conditions.values())[:_OF_EACH]
     return sample

@@ -1,7 +1,7 @@
 """Run a plan into a folder, from wherever an earlier invocation left it."""
 
 import logging
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
@@ -14,13 +14,11 @@ from faultpath.run.code import Code, named
 from faultpath.run.deliveries import Deliveries
 from faultpath.run.execution.dispatch import Built, dispatch
 from faultpath.run.execution.recheck import Rechecks, repeat
-from faultpath.run.execution.schedule import Task, TaskQueue, Unit, units_of
-from faultpath.run.execution.state import RunState, Stop
+from faultpath.run.execution.state import Failure, RunState, Stop
 from faultpath.run.findings import Finding, Recheck
-from faultpath.run.plan import Plan, Treatment, check_rows
+from faultpath.run.plan import Plan, Task, TaskQueue, Unit, check_rows, units_of
 from faultpath.run.registry import load_system
-from faultpath.run.store.folder import RunFolder
-from faultpath.run.store.manifest import Manifest
+from faultpath.run.store.folder import Manifest, RunFolder
 from faultpath.run.trials import Trials
 from faultpath.run.work.executor import Executor, Failed, Progress
 from faultpath.run.work.processes import local
@@ -30,23 +28,12 @@ _log = logging.getLogger("faultpath")
 
 
 @dataclass(frozen=True)
-class Failure:
-    """A trial in which the program raised an error or died."""
-
-    treatment: Treatment
-    scene: str
-    error: str
-    details: Path | None
-    """The file with the traceback, when there is one."""
-
-
-@dataclass(frozen=True)
 class RunResult:
     """A finished run."""
 
     trials: Trials
     deliveries: Deliveries
-    """Deliveries of the taps, row by row, and what a reader of the results has to know."""
+    """With what a reader of the results has to know."""
     blocks_computed: int
     blocks_kept: int
     failures: tuple[Failure, ...]
@@ -61,8 +48,7 @@ class RunResult:
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """Findings that a reader has to know: results that do not repeat, readers that
-        never read or that write, hashes that prove nothing."""
+        """Results that do not repeat, readers that never read or that write, and the like."""
         return self.deliveries.findings
 
 
@@ -123,9 +109,9 @@ def run_plan(
             work = partial(dispatch, workforce, built, _attempted, limit_s=time_limit_s)
             # A finished run of other code counts as it is once a sample of it repeats: else a
             # changed message would have all of its trials run again.
-            theirs = _units(plan, built, earlier) if earlier else ()
-            if earlier and (blocks := run.finished((unit.key, unit.scenes) for unit in theirs)):
-                manifest, units = earlier, theirs
+            stored = _units(plan, built, earlier) if earlier else ()
+            if earlier and (blocks := run.finished((unit.key, unit.scenes) for unit in stored)):
+                manifest, units = earlier, stored
                 changed = named(earlier.code.changed(code.state)) or "faultpath"
                 notice(repeat(blocks, units, run, work, changed))
             state = RunState(plan, library, units, run, stop)
@@ -137,11 +123,11 @@ def run_plan(
                     lambda task, reply: schedule.put(state.take_in(task, reply)),
                     report=lambda: progress(state.progress()),
                 )
-                again = Rechecks(state.units, state.outcomes, run)
+                rechecks = Rechecks(state.units, state.outcomes, run)
                 if recheck:
-                    waiting = iter(again.tasks())
-                    work(lambda worker: next(waiting, None), again.handle_reply)
-                trials, findings = state.trials(), (*state.findings(), *again.findings())
+                    tasks = iter(rechecks.tasks(state.sound_units()))
+                    work(lambda worker: next(tasks, None), rechecks.handle_reply)
+                trials, findings = state.trials(), (*state.findings(), *rechecks.findings())
                 deliveries = Deliveries.of(plan, state.taps(), trials, findings)
                 digest = run.save_tables(trials, deliveries)
     except KeyboardInterrupt:
@@ -156,12 +142,12 @@ def run_plan(
         deliveries=deliveries,
         blocks_computed=state.computed,
         blocks_kept=state.kept,
-        failures=tuple(_failures(state, run)),
+        failures=state.failures(),
         outcomes_sha256=digest,
         system_fingerprint=manifest.code.digest,
         code=(code,) if manifest.code == code.state else (),
         library_hash=library.content_hash,
-        rechecks=again.of_this_run(),
+        rechecks=rechecks.of_this_run(),
     )
 
 
@@ -175,16 +161,6 @@ def _units(plan: Plan, built: Built, manifest: Manifest) -> tuple[Unit, ...]:
     units = units_of(plan, library, system.scenes_a_block(len(library.scenes)), fingerprint)
     check_rows(plan.rows, system.variants)
     return units
-
-
-def _failures(state: RunState, folder: RunFolder) -> Iterator[Failure]:
-    for unit in state.units:
-        details = folder.failures / f"{unit.key}.txt"
-        for scene in unit.scenes:
-            outcome = state.outcomes[unit.treatment_key, scene]
-            if outcome.failed:
-                where = details if details.exists() else None
-                yield Failure(unit.treatment, scene, outcome.error or "", where)
 
 
 def _attempted(system: System, task: Task) -> Reply:

@@ -2,17 +2,17 @@
 
 import time
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 from faultpath.core.errors import UserError
 from faultpath.core.text import one_line
 from faultpath.loop import TapCount, added
 from faultpath.run.attempt import Done, Raised, Reply
 from faultpath.run.deliveries import TreatmentPart
-from faultpath.run.execution.schedule import Task, Unit
 from faultpath.run.findings import RaisedTogether
-from faultpath.run.plan import Plan, selected
+from faultpath.run.plan import Plan, Task, Treatment, Unit, selected
 from faultpath.run.store.folder import RunFolder
 from faultpath.run.trials import Trial, Trials
 from faultpath.run.work.executor import Failed, Lost, Progress
@@ -29,6 +29,17 @@ Stop = Callable[[Trials], bool]
 
 class NothingRuns(UserError):
     """A system failed in all of the first trials: the rest would only repeat it."""
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A trial in which the program raised an error or died."""
+
+    treatment: Treatment
+    scene: str
+    error: str
+    details: Path | None
+    """The file with the traceback, when there is one."""
 
 
 @dataclass
@@ -53,7 +64,7 @@ class RunState:
         library: Library,
         units: tuple[Unit, ...],
         folder: RunFolder,
-        stop: Stop | None = None,
+        stop: Stop | None,
     ) -> None:
         self.outcomes: dict[tuple[str, str], Outcome] = {}
         """By treatment key and scene."""
@@ -81,9 +92,9 @@ class RunState:
         failed = 0
         for unit in self._units:
             shard = self._folder.load_shard(unit.key, unit.scenes, notice)
-            lost = sum(outcome.failed for outcome in shard.outcomes) if shard else 0
-            failed += lost
-            if shard is None or lost:
+            unit_failed = sum(outcome.failed for outcome in shard.outcomes) if shard else 0
+            failed += unit_failed
+            if shard is None or unit_failed:
                 missing.append(unit)
             else:
                 self._enter(unit, shard)
@@ -108,6 +119,7 @@ class RunState:
         and `NothingRuns` after a few failed trials and no other.
         """
         unit, taps = task.unit, tuple[TapCount, ...]()
+        partial = self._partial.setdefault(unit.key, _Partial())
         match reply:
             case Done():
                 outcomes, taps = reply.outcomes, reply.taps
@@ -115,7 +127,7 @@ class RunState:
             case Lost() | Raised() if task.scenes[1:]:
                 if isinstance(reply, Raised):
                     whole = f"{_WHOLE}{one_line(reply.error)}\n{reply.traceback}\n"
-                    self._partial.setdefault(unit.key, _Partial()).tracebacks.append(whole)
+                    partial.tracebacks.append(whole)
                 return tuple(replace(task, scenes=(scene,)) for scene in task.scenes)
             case Lost() | Raised():
                 scene = task.scenes[0]
@@ -124,7 +136,6 @@ class RunState:
                 details = {scene: reply.traceback if isinstance(reply, Raised) else error}
             case Failed():
                 raise reply.error
-        partial = self._partial.setdefault(unit.key, _Partial())
         for scene, detail in details.items():
             partial.tracebacks.append(f"{scene}: {unit.treatment.model_dump_json()}\n{detail}\n")
         partial.outcomes |= {outcome.scene: outcome for outcome in outcomes}
@@ -153,22 +164,25 @@ class RunState:
         return ()
 
     def findings(self) -> tuple[RaisedTogether, ...]:
-        """Return what is wrong with the system though its trials ended: it takes one scene
-        alone."""
-        units = self.units
-        sound = [
-            unit
-            for unit in units
-            if not any(self.outcomes[unit.treatment_key, scene].failed for scene in unit.scenes)
-        ]
-        errors = [
-            text.partition("\n")[0].removeprefix(_WHOLE)
-            for text in (self._folder.load_failure(unit.key) for unit in sound)
-            if text.startswith(_WHOLE)
-        ]
+        """Return what is wrong with a system whose trials end only when each runs alone."""
+        texts = (self._folder.load_failure(unit.key) for unit in self.sound_units())
+        errors = [text.partition("\n")[0] for text in texts if text.startswith(_WHOLE)]
         if not errors:
             return ()
-        return (RaisedTogether(blocks=len(errors), of=len(units), error=errors[0]),)
+        error = errors[0].removeprefix(_WHOLE)
+        return (RaisedTogether(blocks=len(errors), of=len(self.units), error=error),)
+
+    def failures(self) -> tuple[Failure, ...]:
+        """Return the trials that failed, of the units that count."""
+        failures: list[Failure] = []
+        for unit in self.units:
+            details = self._folder.failures / f"{unit.key}.txt"
+            for scene in unit.scenes:
+                outcome = self.outcomes[unit.treatment_key, scene]
+                if outcome.failed:
+                    place = details if details.exists() else None
+                    failures.append(Failure(unit.treatment, scene, outcome.error or "", place))
+        return tuple(failures)
 
     def _enter(self, unit: Unit, shard: Done) -> None:
         self.outcomes.update(
@@ -191,17 +205,34 @@ class RunState:
         return self._over
 
     def trials(self) -> Trials:
-        """Return the trials that count: all, or those of the analyses that were made."""
-        plan = self._plan
+        """Return the trials that count, row by row of the plan: all, or those of the analyses that
+        were made."""
+        plan, scenes = self._plan, selected(self._plan, self._library)
         if self._stop:
-            scenes = plan.scenes[: self._analyses * plan.scenes_per_analysis]
-            plan = plan.model_copy(update={"scenes": scenes})
-        return _assembled(plan, self._library, self.outcomes)
+            counted = set(plan.scenes[: self._analyses * plan.scenes_per_analysis])
+            scenes = tuple(scene for scene in scenes if scene.id in counted)
+        trials: list[Trial] = []
+        for row in plan.rows:
+            address, key = (row.variant, row.condition, row.seed), row.treatment.key()
+            part = frozenset(row.scenes or plan.scenes)
+            for scene in scenes:
+                if scene.id in part:
+                    outcome = self.outcomes[key, scene.id]
+                    trials.append(Trial(*address, scene.index, scene.topology, outcome))
+        return Trials.of(trials)
 
     @property
     def units(self) -> tuple[Unit, ...]:
         """The units whose trials count."""
         return tuple(unit for unit in self._units if not self._stop or unit.block < self._analyses)
+
+    def sound_units(self) -> list[Unit]:
+        """Return the units that count and in which no trial failed."""
+        return [
+            unit
+            for unit in self.units
+            if not any(self.outcomes[unit.treatment_key, scene].failed for scene in unit.scenes)
+        ]
 
     def taps(self) -> dict[TreatmentPart, tuple[TapCount, ...]]:
         """Return what the taps did in the units that count."""
@@ -217,14 +248,3 @@ class RunState:
             left = (self._trials - self._done) * (time.monotonic() - self._began) / self._ended
         count = f"{self._done_in_rows} of {self._in_rows} trials"
         return Progress(self._done, self._trials, count, left)
-
-
-def _assembled(plan: Plan, library: Library, outcomes: Mapping[tuple[str, str], Outcome]) -> Trials:
-    """Return the outcomes, by treatment key and scene, in the order of the plan's rows."""
-    scenes, trials = selected(plan, library), list[Trial]()
-    for row in plan.rows:
-        where, key = (row.variant, row.condition, row.seed), row.treatment.key()
-        part = frozenset(row.scenes or plan.scenes)
-        here = (scene for scene in scenes if scene.id in part)
-        trials += [Trial(*where, s.index, s.topology, outcomes[key, s.id]) for s in here]
-    return Trials.of(trials)

@@ -1,1 +1,1 @@
-"""Trials that other tools ran: what is asked of their results, and how their files are read."""
+"""Trials that other tools ran: the question about them, and how their files are read."""

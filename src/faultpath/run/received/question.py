@@ -76,7 +76,7 @@ class JudgeQuestion(UserQuestion):
 
     panel: ClassVar[str] = "What is compared"
 
-    # What only an audit may be asked.
+    # Fields that only an audit's question has.
     options: ClassVar[Mapping[str, str]] = {}
     metric: ClassVar[str] = ""
     thresholds: ClassVar[tuple[float, ...]] = ()

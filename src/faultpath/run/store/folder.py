@@ -1,25 +1,24 @@
-"""A run on disk, and whether its files are still as the run left them.
-
-A run folder may come from anybody and may have been edited by anybody. Its provenance names each
-file that a report is made from with a digest; whoever reads the folder reads all of them, compares,
-and parses the very bytes that it has compared.
-"""
+"""A run on disk: the plan that it is of, its finished blocks, and the tables made from them."""
 
 import hashlib
-from collections.abc import Generator, Iterable, Mapping, Sequence
+import json
+from collections.abc import Generator, Iterable, Sequence
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Any
 
 from faultpath.core.errors import UserError
 from faultpath.core.files import atomic
-from faultpath.core.files.atomic import Say, locked, make_folder, write_file
-from faultpath.core.files.opening import contents
+from faultpath.core.files.atomic import Say, check_folder, locked, make_folder, write_file
+from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.parquet import Unreadable
+from faultpath.core.files.plain import Misread, model_of, read_json
+from faultpath.core.results import Frozen
 from faultpath.run.attempt import Done
-from faultpath.run.code import CodeState
+from faultpath.run.code import CodeState, named
 from faultpath.run.deliveries import Deliveries
-from faultpath.run.store.manifest import Manifest, check_same, read_manifest
+from faultpath.run.plan import Plan
 from faultpath.run.store.tables import (
     decode_outcomes,
     decode_shard,
@@ -31,7 +30,24 @@ from faultpath.run.trials import Trials
 
 OUTCOMES, TRACES, DELIVERIES = "outcomes.parquet", "traces.parquet", "deliveries.json"
 """Files that are assembled at the end of a run."""
-AGAIN = "run it again, into a new folder"
+FORMAT = 3
+"""Version of the folder's layout and of its columns."""
+
+
+class Manifest(Frozen):
+    """The plan of a run folder and the exact system and scenes that it was run with."""
+
+    format: int = FORMAT
+    faultpath_version: str
+    code: CodeState
+    """Source files, data files, packages."""
+    library_hash: str
+    plan: Plan
+
+    def encode(self) -> bytes:
+        """Return the file's contents."""
+        content = self.model_dump(mode="json")
+        return (json.dumps(content, indent=2, sort_keys=True) + "\n").encode()
 
 
 def keyed(place: Path, name: str, code: CodeState) -> Path:
@@ -54,14 +70,12 @@ class RunFolder:
         self.failures = path / "failures"
         self.manifest = path / "manifest.json"
         self.rechecks = path / "rechecks.json"
-        self._shard_files: dict[str, list[Path]] | None = None
-        """By key, as they were listed last: a list for each block would cost its square."""
         self.provenance = path / "provenance.json"
+        self._shard_files: dict[str, list[Path]] | None = None
+        """By key, as listed last: listing the folder for each block would cost its square."""
 
     @contextmanager
-    def open(
-        self, manifest: Manifest, notice: Say, shared: bool = False
-    ) -> Generator[None, None, None]:
+    def open(self, manifest: Manifest, notice: Say, shared: bool = False) -> Generator[None]:
         """Create or continue the run, alone in the folder until the end of the `with` block.
 
         `shared` lets plans with other treatments use the folder one after the other. `UserError`
@@ -95,9 +109,9 @@ class RunFolder:
         data = encode_shard(key, shard)
         path = self.shards / f"{key}-{_digest(data)[:32]}.parquet"
         self._write(path, data)
-        for other in self._files_of(key):
-            if other != path:  # the block as it was before its failed trials were tried again
-                other.unlink(missing_ok=True)
+        for file in self._files_of(key):
+            if file != path:  # the block as it was before its failed trials were tried again
+                file.unlink(missing_ok=True)
         self._files_of(key)[:] = [path]
 
     def written(self, keys: Sequence[str]) -> tuple[datetime, datetime]:
@@ -165,6 +179,61 @@ class RunFolder:
         write_file(path, data, self.path)
 
 
+def read_manifest(path: Path) -> Manifest | None:
+    """Read a manifest, `None` when there is none; `UserError` when this version cannot use it."""
+    check_folder(path.parent)
+    try:
+        data = contents(path, LARGEST_TEXT)
+        content: Any = read_json(data)
+        # Before the model, which other formats do not fit.
+        if content["format"] != FORMAT:
+            raise UserError(
+                f"{path.parent} was written in format {content['format']} and this faultpath reads "
+                f"format {FORMAT}: choose another folder, or the version of faultpath that wrote it"
+            )
+        return model_of(data, Manifest)
+    except FileNotFoundError:
+        return None
+    except (OSError, Misread, TypeError, KeyError) as error:
+        why = error.strerror if isinstance(error, OSError) else error
+        raise UserError(
+            f"{path} cannot be read as a manifest ({why}): choose a new folder, or delete this one"
+        ) from error
+
+
+def check_same(folder: Path, previous: Manifest, manifest: Manifest, shared: bool = False) -> None:
+    """Raise `UserError` unless `folder` may go on with the plan of `manifest`.
+
+    The selection of scenes may differ: a run of some scenes grows into one of the whole library in
+    the same folder, and keeps what it has. In a folder that the rounds of one map or scan share,
+    their treatments may differ as well.
+    """
+    plan, stored = manifest.plan, previous.plan
+    compared: dict[str, tuple[object, object]] = {
+        "version of faultpath": (previous.faultpath_version, manifest.faultpath_version),
+        "question": (stored.name, plan.name),
+        "system": (stored.system, plan.system),
+        "library": (stored.library, plan.library),
+        "state of the library": (previous.library_hash, manifest.library_hash),
+    }
+    if not shared:
+        compared["set of variants, faults or seeds"] = (stored.rows, plan.rows)
+        per_analysis = stored.scenes_per_analysis, plan.scenes_per_analysis
+        compared["number of scenes from analysis to analysis"] = per_analysis
+    for name, (before, after) in compared.items():
+        if before != after:
+            raise UserError(
+                f"{folder} holds another run, with another {name}: choose a new folder, or repeat "
+                "the command that made this one"
+            )
+    if changed := previous.code.changed(manifest.code):
+        raise UserError(
+            f"{folder} holds trials of other code than this (changed since: {named(changed)}): "
+            "they are kept and not mixed with new ones; choose a new folder, or go back to that "
+            "code to resume"
+        )
+
+
 def _read_shard(path: Path, key: str, scenes: Sequence[str]) -> Done:
     try:
         data = contents(path)
@@ -200,33 +269,6 @@ def read_regular(path: Path) -> bytes:
         raise UserError(
             f"{path} cannot be read ({error.strerror}): give the folder of a finished run."
         ) from error
-
-
-def seal(folder: Path, names: Iterable[str]) -> dict[str, str]:
-    """Return the SHA-256 of each file by name."""
-    return {name: _digest(contents(folder / name)) for name in names}
-
-
-def unseal(folder: Path, digests: Mapping[str, str], needed: Iterable[str]) -> dict[str, bytes]:
-    """Return the contents of every file that `digests` names, by name.
-
-    Raises `UserError`, with the names, where one that is needed has no digest, one is missing, or
-    one has another digest: it was changed.
-    """
-    unnamed = [name for name in needed if name not in digests]
-    if unnamed:
-        raise UserError(
-            f"{folder / 'provenance.json'} has no digest of {', '.join(unnamed)}, as if an earlier "
-            f"faultpath had written it: {AGAIN}."
-        )
-    files = {name: read_regular(folder / name) for name in digests}
-    changed = [name for name, data in files.items() if _digest(data) != digests[name]]
-    if changed:
-        raise UserError(
-            f"{folder}: {', '.join(changed)} changed since the run, by the SHA-256 in "
-            f"provenance.json: bring back what the run wrote, or {AGAIN}."
-        )
-    return files
 
 
 def _digest(data: bytes) -> str:

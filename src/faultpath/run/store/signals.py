@@ -74,13 +74,12 @@ def decode_signals(data: bytes) -> dict[TrialAddress, tuple[Signal, ...]]:
     """Return the signals of a Parquet file; `Unreadable` when it holds none."""
     rows, _ = decode(data, _SCHEMA)
     trials: dict[TrialAddress, list[Signal]] = {}
-    same = itemgetter("variant", "condition", "seed", "scene", "signal", "topic", "unit")
-    for key, group in groupby(rows, key=same):
+    key = itemgetter("variant", "condition", "seed", "scene", "signal", "topic", "unit")
+    for (*address, name, topic, unit), group in groupby(rows, key=key):
         parts = tuple(group)
         columns = [part["values"] for part in parts]
         if len({len(column) for column in columns}) != 1:
             raise Unreadable("the components of a signal differ in length")
-        *address, name, topic, unit = key
         if any(np.isinf(column).any() for column in columns):
             raise Unreadable(f"the signal '{name}' is infinite")
         named = tuple(str(part["part"]) for part in parts if part["part"])

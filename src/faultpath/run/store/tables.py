@@ -41,10 +41,8 @@ _MAY_LACK = ("time_s", "error", *_TRACE)
 _TRACES = {**_ADDRESS, **_TRACE}
 FIXED = frozenset({*_ADDRESS, *_PLACE, *_END, *_RESULT, *_TRACE})
 """Columns that no metric can be called."""
-_KEY = "faultpath.key"
-"""Under which name a shard's metadata keeps the key of its unit."""
-_TAPS = "faultpath.loop.taps"
-"""Under which name a shard's metadata keeps what the taps did."""
+_KEY, _TAPS = "faultpath.key", "faultpath.loop.taps"
+"""Names under which a shard's metadata keeps the key of its unit, and what the taps did."""
 _TAP_COUNTS = TypeAdapter(tuple[TapCount, ...])
 
 
@@ -69,13 +67,11 @@ def decode_shard(data: bytes, key: str) -> Done:
     """Return one block; `Unreadable` when the bytes are not the shard of `key`, whole."""
     schema = {"scene": TEXT, **_END, **_RESULT, **_TRACE}
     rows, notes = decode(data, schema, _MAY_LACK, more=NUMBER)
-    if _TAPS not in notes:
-        raise Unreadable("it is of an earlier version, which kept no delivery log")
     if notes.get(_KEY) != key:
         raise Unreadable("it was written under another key")
     try:
         taps = _TAP_COUNTS.validate_json(notes[_TAPS])
-    except ValidationError as error:
+    except (KeyError, ValidationError) as error:
         raise Unreadable("its delivery log cannot be read") from error
     return Done(tuple(_outcome(row, _trace(row)) for row in rows), taps)
 
@@ -83,27 +79,25 @@ def decode_shard(data: bytes, key: str) -> Done:
 def encode_outcomes(trials: Trials) -> bytes:
     """Return the trials without their traces, a row each."""
     places: list[list[int]] = trials.places.T.tolist()
-    variant, condition, seed, scene = places
-    refs = trials.scenes
+    variants, conditions, seeds, scenes = places
     columns: dict[str, Any] = {
-        "variant": [trials.variants[at] for at in variant],
-        "condition": [trials.conditions[at] for at in condition],
-        "seed": [trials.seeds[at] for at in seed],
-        "scene": [refs[at].id for at in scene],
-        "scene_index": [refs[at].index for at in scene],
-        "topology": [refs[at].topology for at in scene],
-        "status": [STATUSES[at] for at in trials.status],
+        "variant": [trials.variants[place] for place in variants],
+        "condition": [trials.conditions[place] for place in conditions],
+        "seed": [trials.seeds[place] for place in seeds],
+        "scene": [trials.scenes[place].id for place in scenes],
+        "scene_index": [trials.scenes[place].index for place in scenes],
+        "topology": [trials.scenes[place].topology for place in scenes],
+        "status": [STATUSES[place] for place in trials.status],
         "time_s": masked(trials.time_s),
         "faulted_steps": trials.steps[0],
         "altered_steps": trials.steps[1],
         "error": [trials.errors.get(row) for row in range(len(trials))],
         **trials.texts,
     }
-    none = np.full(len(trials), np.nan)
+    empty = np.full(len(trials), np.nan)
     metrics = _columns(trials.metrics)
-    columns |= {name: masked(trials.metrics.get(name, none)) for name in metrics}
-    schema = {**_ADDRESS, **_PLACE, **_END, **metrics, **_RESULT}
-    return encode_columns(schema, columns)
+    columns |= {name: masked(trials.metrics.get(name, empty)) for name in metrics}
+    return encode_columns({**_ADDRESS, **_PLACE, **_END, **metrics, **_RESULT}, columns)
 
 
 def decode_outcomes(data: bytes, traces: Mapping[TrialAddress, Trace] | None = None) -> Trials:
@@ -140,18 +134,17 @@ def decode_traces(data: bytes) -> dict[TrialAddress, Trace]:
 
 def traces_of(trials: Trials) -> dict[TrialAddress, Trace]:
     """Return the traces of trials by where these stand."""
-    traces: dict[TrialAddress, Trace] = {}
-    for row in sorted(trials.traces):
-        place: list[int] = trials.places[row].tolist()
-        variant, condition, seed, scene = place
-        address = TrialAddress(
+    rows = sorted(trials.traces)
+    places: list[list[int]] = trials.places[rows].tolist()
+    return {
+        TrialAddress(
             trials.variants[variant],
             trials.conditions[condition],
             trials.seeds[seed],
             trials.scenes[scene].id,
-        )
-        traces[address] = trials.traces[row]
-    return traces
+        ): trials.traces[row]
+        for row, (variant, condition, seed, scene) in zip(rows, places, strict=True)
+    }
 
 
 def _address(row: Row) -> TrialAddress:
@@ -189,11 +182,9 @@ def _trace(row: Row) -> Trace | None:
 
 def _outcome(row: Mapping[str, Any], trace: Trace | None, untimed: bool = False) -> Outcome:
     """Return the outcome in a row; refuse what no trial leaves behind, whoever wrote it."""
-    fixed = {"scene", *_END, *_RESULT}
-    others = fixed.union(_ADDRESS, _PLACE, _TRACE)
-    fields = {name: row[name] for name in fixed}
+    fields = {name: row[name] for name in ("scene", *_END, *_RESULT)}
     fields["trajectory_hash"] = fields["trajectory_hash"] or ""  # of before there was one
-    metrics = {k: v for k, v in row.items() if k not in others and v is not None}
+    metrics = {k: v for k, v in row.items() if k not in FIXED and v is not None}
     try:
         fields["status"] = Status(fields["status"])
     except ValueError as error:

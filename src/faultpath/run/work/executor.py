@@ -45,7 +45,7 @@ Call = Callable[[], Any]
 """Work of a worker: a function of a module, bound to its arguments with `functools.partial`, or
 a method of a plain object. Unless it runs in this process, it and what it returns are pickled."""
 OnMessage = Callable[[Any], None]
-"""Called, in the process that submitted, with what the call tells on its way."""
+"""Called, in the process that submitted, with each message that the call sends."""
 
 _TICK_S = 0.5
 
@@ -75,11 +75,11 @@ End = Returned | Failed | Lost
 
 
 class WorkerLost(UserError):
-    """A worker ended by itself, and nothing else can be done than to say so."""
+    """A worker ended by itself, and the work cannot go on."""
 
 
 def ignore(message: object) -> None:
-    """Take no notice of what a call tells."""
+    """Drop a message of a call."""
     del message
 
 
@@ -90,7 +90,7 @@ class Progress:
     done: float
     total: float | None
     count: str
-    """The same in words."""
+    """The same, in words."""
     seconds: float | None = None
     """Left; `None` until something can be known."""
     remark: str = ""
@@ -114,7 +114,7 @@ class Executor(ABC):
     """Number of workers, started or not; 0 where calls run in this process: nothing is pickled, and
     no call can be cancelled."""
     name: str = ""
-    """On what calls run, in words, where that is not this machine."""
+    """Name of where calls run, where that is not this machine."""
 
     @abstractmethod
     def free(self) -> Sequence[int]:
@@ -126,7 +126,7 @@ class Executor(ABC):
 
     @abstractmethod
     def completions(self, timeout_s: float) -> Iterator[tuple[int, End]]:
-        """Wait for news, at most so long; pass on what calls tell and yield those that ended."""
+        """Wait at most so long; pass on messages of calls and yield those that ended."""
 
     @abstractmethod
     def cancel(self, worker: int) -> None:
@@ -151,12 +151,12 @@ def run_each(
 ) -> Iterator[tuple[int, End]]:
     """Run calls and yield the place of each in `calls` with its end, as they end.
 
-    `on_message` is called with the place of a call and what it tells on its way.
+    `on_message` is called with the place of a call and each message that it sends.
     """
-    waiting = iter(enumerate(calls))
+    queue = iter(enumerate(calls))
     running: dict[int, int] = {}
     while True:
-        for worker, (place, call) in zip(executor.free(), waiting, strict=False):
+        for worker, (place, call) in zip(executor.free(), queue, strict=False):
             running[worker] = place
             executor.submit(worker, call, partial(on_message, place))
         if not running:
@@ -182,7 +182,7 @@ _places: list[str] = []
 
 
 def live_on(place: str) -> None:
-    """Say where this worker process is, in words, where that is not its caller's machine."""
+    """Note where this worker process is, in words, where that is not its caller's machine."""
     _places[:] = [place]
 
 
@@ -195,7 +195,7 @@ _on_message: ContextVar[OnMessage] = ContextVar("on_message", default=ignore)
 
 
 def send_message(message: object) -> None:
-    """Tell whoever submitted the call that runs here; outside of one, nobody."""
+    """Send a message to whoever submitted the call that runs here; outside of one, to nobody."""
     _on_message.get()(message)
 
 

@@ -204,6 +204,6 @@ def served(packed: bytes, on_message: OnMessage) -> memoryview:
         return ForkingPickler.dumps(end)
     except Exception as error:
         cause = end.error if isinstance(end, Failed) else error
-        instead = RuntimeError(f"{type(cause).__name__}: {cause}")
-        instead.__notes__ = getattr(cause, "__notes__", [])
-        return ForkingPickler.dumps(Failed(instead))
+        substitute = RuntimeError(f"{type(cause).__name__}: {cause}")
+        substitute.__notes__ = getattr(cause, "__notes__", [])
+        return ForkingPickler.dumps(Failed(substitute))

@@ -56,8 +56,8 @@ class _WithoutNews:
         self.output = output
 
     def __getattr__(self, name: str) -> Any:
-        theirs = threading.current_thread().name.startswith("ray_")
-        return getattr(sys.stderr if theirs else self.output, name)
+        of_ray = threading.current_thread().name.startswith("ray_")
+        return getattr(sys.stderr if of_ray else self.output, name)
 
 
 @dataclass
@@ -90,7 +90,7 @@ class RayWorkers(Executor):
                 "a CPU"
             )
         self._ours = _connect(address, count)
-        sys.stdout = self._told = _WithoutNews(sys.stdout)
+        sys.stdout = self._stdout = _WithoutNews(sys.stdout)
         self.count = count or max(1, int(_ray.cluster_resources().get("CPU", 0)))
         self._nodes: set[str] = set()
         self._false_starts: Counter[int] = Counter()
@@ -171,8 +171,8 @@ class RayWorkers(Executor):
             with _as_before(), redirect_stdout(sys.stderr):
                 _ray.shutdown()
         self._ours = False
-        if sys.stdout is self._told:
-            sys.stdout = self._told.output
+        if sys.stdout is self._stdout:
+            sys.stdout = self._stdout.output
 
     def _started(self) -> _Worker:
         own = (os.path.realpath(sys.prefix), os.path.realpath(sys.base_prefix))
