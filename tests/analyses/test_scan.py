@@ -13,7 +13,7 @@ from faultpath.analyses.scan.model import ScanResult
 from faultpath.analyses.scan.ranking import PROBED_SCENES
 from faultpath.core.errors import UserError
 from faultpath.report.scan import every_table, tables
-from faultpath.report.sentences.words import words
+from faultpath.report.sentences import words
 from faultpath.stats.cancelling import LEVEL, MOST, REGAINED
 from faultpath.stats.estimate import ALPHA
 

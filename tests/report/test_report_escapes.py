@@ -15,7 +15,7 @@ from faultpath.report.frame import render
 from faultpath.report.inputs import ReportInput
 from faultpath.report.svg import Svg
 from faultpath.report.tables import Entry, Line, Table, escapes
-from faultpath.report.tables.markdown import block as table_markdown
+from faultpath.report.tables import markdown_block as table_markdown
 
 NASTY = '<script>alert("x")</script> & 100 % of _it_'
 PARSER = MarkdownIt("commonmark", {"html": True}).enable(["table", "strikethrough"])

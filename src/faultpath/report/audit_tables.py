@@ -5,12 +5,11 @@ from collections.abc import Mapping, Sequence
 from faultpath.analyses.effects import Effect
 from faultpath.analyses.model import AuditResult
 from faultpath.core.text import capital, counted
-from faultpath.report.secondary import condition_titles, secondary
 from faultpath.report.sentences import phrases, wording
 from faultpath.report.sentences.headline import headline
 from faultpath.report.sentences.phrases import adjusted, not_standing, only_alone
-from faultpath.report.tables import MISSING, Entry, Line, Table, line
-from faultpath.report.tables.markdown import block
+from faultpath.report.tables import MISSING, Entry, Line, Table, line, markdown_block
+from faultpath.stats.estimate import Estimate
 
 _VARIANTS = ("baseline", "repair")
 _MEDIAN = "median time of successes"
@@ -190,7 +189,7 @@ def whole_table(record: AuditResult) -> Table:
 
 def markdown_table(record: AuditResult) -> str:
     """Return the whole table as Markdown, with the question above it and the verdict below."""
-    return block(whole_table(record))
+    return markdown_block(whole_table(record))
 
 
 def ended(record: AuditResult) -> Table:
@@ -229,3 +228,83 @@ def median_time(record: AuditResult) -> str:
 
 def _median(time_s: float | None) -> str:
     return MISSING if time_s is None else wording.plain(time_s, 2)
+
+
+def secondary(record: AuditResult) -> Table | None:
+    """Return time and metrics, repair minus baseline, by condition, and success at each threshold
+    of the chosen metric; `None` without any."""
+    question = record.question
+    rows = {"time on joint successes (s)": [_difference(of.time_s) for of in record.secondary]}
+    for name, metric in record.facts.metrics.items():
+        if name == question.metric:
+            rows |= _chosen_metric(record, f", {question.baseline} → {question.repair}")
+            continue
+        label = f"{metric.label(name)} ({metric.unit})"
+        rows[label] = [_difference(of.metrics.get(name)) for of in record.secondary]
+    shown = {label: row for label, row in rows.items() if set(row) != {MISSING}}
+    if not shown:
+        return None
+    return Table(
+        title=f"Secondary, not tested: {question.repair} minus {question.baseline}",
+        corner="Metric",
+        columns=condition_titles(record),
+        lines=tuple(line(label, *row) for label, row in shown.items()),
+    )
+
+
+def chosen_metric(record: AuditResult) -> Table | None:
+    """Return the chosen metric and success at each threshold of it, with a row for each condition;
+    `None` without."""
+    question, rows = record.question, _chosen_metric(record)
+    if not rows:
+        return None
+    return Table(
+        title=f"Secondary, not tested: {question.baseline} → {question.repair}, difference",
+        corner="Condition",
+        columns=tuple(rows),
+        lines=tuple(map(line, condition_titles(record), *rows.values())),
+    )
+
+
+def _chosen_metric(record: AuditResult, versions: str = "") -> dict[str, list[str]]:
+    """Return the chosen metric and success at its thresholds, by condition; nothing without one.
+
+    A trial succeeds at a threshold if it did not crash and its metric is on the better side.
+    """
+    question = record.question
+    if not question.metric:
+        return {}
+    metric = record.facts.metrics[question.metric]
+    label = metric.label(question.metric)
+    sign = "≤" if metric.better == "less" else "≥"
+    rows: dict[str, list[str]] = {f"{label} ({metric.unit}){versions}": []}
+    (means,) = rows.values()
+    for of in record.secondary:
+        difference = of.metrics.get(question.metric)
+        if difference is None or of.metric_means is None:
+            means.append(MISSING)
+            continue
+        digits = wording.digits_of(difference)
+        one, two = (wording.plain(mean, digits) for mean in of.metric_means)
+        means.append(f"{one} → {two}, {_difference(difference)}")
+    for number, at in enumerate(sorted(set(question.thresholds))):
+        rates = rows[f"success if {label} {sign} {at:g} {metric.unit}, %"] = []
+        for of in record.secondary:
+            if len(of.thresholds) <= number:
+                rates.append(MISSING)
+                continue
+            there = of.thresholds[number]
+            one, two = map(wording.plain, (there.baseline_percent, there.repair_percent))
+            rates.append(f"{one} → {two}, {wording.with_interval(there.difference)}")
+    return rows
+
+
+def _difference(estimate: Estimate | None) -> str:
+    if estimate is None:
+        return MISSING
+    return wording.with_interval(estimate, wording.digits_of(estimate))
+
+
+def condition_titles(record: AuditResult) -> tuple[str, ...]:
+    """Return the titles of the conditions, in the order of the effects."""
+    return tuple(record.titles[effect.condition] for effect in record.effects)

@@ -24,9 +24,8 @@ from faultpath.report.effects import Row, panel, shared_axis
 from faultpath.report.frame import render
 from faultpath.report.sentences import wording
 from faultpath.report.svg import tick_label
-from faultpath.report.tables import MISSING, Entry, Line, Table, line
-from faultpath.report.tables.html import html
-from faultpath.report.tables.terminal import Parted, drawn
+from faultpath.report.tables import MISSING, Entry, Line, Table, html, line
+from faultpath.report.terminal import Parted, drawn
 from faultpath.run.store.folder import OUTCOMES
 
 _LABEL = 28

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from faultpath.analyses.effects import Effect
 from faultpath.analyses.model import AuditResult, ConditionBreakEven
 from faultpath.report.sentences import wording
-from faultpath.report.sentences.phrases import in_short
-from faultpath.report.sentences.shares import ahead
+from faultpath.report.sentences.phrases import ahead, in_short
 from faultpath.report.svg import Axis, Svg, covering, draw_axes, shortened, text_width, tick_label
 
 _PITCH, _TOP, _NUMBERS = 48.0, 44.0, 146.0

@@ -21,8 +21,8 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import check_mark, is_run, make_folder, write_text
 from faultpath.core.text import counted
 from faultpath.core.version import __version__
+from faultpath.report.escapes import unbroken, visible
 from faultpath.report.sentences import wording
-from faultpath.report.tables.escapes import unbroken, visible
 
 PAGE = b'<meta name="generator" content="faultpath '
 """Text in the head of every page."""

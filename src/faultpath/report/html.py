@@ -15,16 +15,15 @@ from faultpath.report.audit_tables import (
     ended,
     markdown_table,
     median_time,
+    secondary,
 )
 from faultpath.report.effects import effect_axis, effect_rows, frequency_panels, no_break_even
 from faultpath.report.frame import STYLES, render, write_pages
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pair_grid import pair_grid, pair_key
-from faultpath.report.secondary import secondary
-from faultpath.report.sentences import phrases, wording
+from faultpath.report.sentences import phrases, wording, words
 from faultpath.report.sentences.answers import answers
-from faultpath.report.sentences.words import words
-from faultpath.report.tables.html import html
+from faultpath.report.tables import html
 from faultpath.report.taps import fork_panel, forks
 from faultpath.report.viewer import viewer_data
 

@@ -1,5 +1,7 @@
 """A map as tables, pictures, terminal and page; all numbers are the record's."""
 
+from collections.abc import Iterator
+from itertools import pairwise, product
 from pathlib import Path
 
 from markupsafe import Markup
@@ -8,16 +10,29 @@ from faultpath.analyses.map.lattice import SHARED
 from faultpath.analyses.map.model import MapResult
 from faultpath.core.text import counted
 from faultpath.report.frame import render, write_pages
-from faultpath.report.map_pictures import correlation_picture, map_picture
-from faultpath.report.sentences import wording
-from faultpath.report.sentences.maps import size_label
+from faultpath.report.sentences import wording, words
+from faultpath.report.sentences.maps import at_point, headline, size_label
 from faultpath.report.sentences.phrases import scenes_like_these
-from faultpath.report.sentences.words import words
-from faultpath.report.tables import Entry, Line, Table, line
-from faultpath.report.tables.html import html
-from faultpath.report.tables.markdown import blocks
+from faultpath.report.svg import (
+    Axis,
+    Point,
+    Svg,
+    covering,
+    draw_axes,
+    number,
+    text_width,
+    tick_label,
+)
+from faultpath.report.tables import Entry, Line, Table, html, line, markdown_blocks
 from faultpath.run.provenance import RunProvenance
 from faultpath.stats.power import MIN_SCENES
+
+_SIDE = 340.0
+"""Side of the square, in pixels."""
+_LEFT, _RIGHT, _TOP = 40.0, 104.0, 168.0
+_SHADES = ((30.0, "0.62"), (10.0, "0.42"), (0.0, "0.22"))
+"""From which difference on, pp, an area has which opacity."""
+_EQUAL = "0: both succeed equally often"
 
 
 def tables(record: MapResult) -> tuple[Table, ...]:
@@ -86,6 +101,157 @@ def _flips(record: MapResult) -> Table:
     )
 
 
+def map_picture(record: MapResult) -> Svg:
+    """Return the map: who is decided to be ahead where, the estimate's zero, conditions and
+    points."""
+    question, facts, side = record.question, record.facts, _SIDE
+    title = f"Reversal map of {facts.system}: {question.repair} against {question.baseline}"
+    svg = Svg(_LEFT + side + _RIGHT, _TOP + side + 48, title, headline(record))
+    x = Axis(-facts.up_to, facts.up_to, _LEFT, _LEFT + side)
+    y = Axis(-facts.up_to, facts.up_to, _TOP + side, _TOP)
+    hatch = svg.hatch("baseline", "range baseline", 6)
+    _key(svg, record, hatch)
+    _areas(svg, record, x, y, hatch)
+    svg.path(
+        f"M{number(x.start)} {number(y.start)}H{number(x.end)}V{number(y.end)}H{number(x.start)}Z",
+        "inner",
+    )
+    first, second = facts.modules
+    svg.line((x(0.0), y.start), (x(0.0), y.end), "zero")
+    svg.line((x.start, y(0.0)), (x.end, y(0.0)), "zero")
+    svg.line((x.start, y.start), (x.end, y.end), "zero")
+    for name, left, up, anchor in (
+        (first, x.end + 6, y(0.0) - 3, "start"),
+        (second, x(0.0), y.end - 20, "middle"),
+    ):
+        svg.text(left, up, name, "bold", anchor, room=_RIGHT - 8)
+        svg.text(left, up + 14, "alone", "bold", anchor)
+    svg.text(x.end + 6, y.end + 4, "shared", "bold")
+    svg.path(" ".join(_zero(record, x, y)), "range")
+    for point in record.points:
+        at = x(point.errors[0]), y(point.errors[1])
+        svg.circle(at, 2.6, "dot" if point.sign else "dot open", tip=at_point(record, point))
+    # What a relative error is asked as is a share, and read as percent.
+    reach, unit = (100 * facts.up_to, "%") if facts.relative else (facts.up_to, facts.unit)
+    x, y = Axis(-reach, reach, x.start, x.end), Axis(-reach, reach, y.start, y.end)
+    for tick in (-reach, -reach / 2, 0.0, reach / 2, reach):
+        svg.line((x(tick), y.start), (x(tick), y.start + 4), "axis")
+        svg.text(x(tick), y.start + 17, tick_label(tick), "small soft", "middle")
+        svg.line((x.start - 4, y(tick)), (x.start, y(tick)), "axis")
+        svg.text(x.start - 8, y(tick) + 4, tick_label(tick), "small soft", "end")
+    across, upward = (f"error at the {at}, {unit}".removesuffix(", 1") for at in facts.modules)
+    svg.text(x(0.0), y.start + 36, across, "small soft", "middle", room=svg.width)
+    svg.text(0, y.end - 38, upward, "small soft", room=svg.width)
+    return svg
+
+
+def _areas(svg: Svg, record: MapResult, x: Axis, y: Axis, hatch: str) -> None:
+    """Fill what is decided, a piece around each place of the lattice; the rest stays empty."""
+    sizes, surface = record.surface.sizes, record.surface
+    edges = [sizes[0], *((a + b) / 2 for a, b in pairwise(sizes)), sizes[-1]]
+    drawn: dict[tuple[int, str], list[str]] = {}
+    for row, column in product(range(len(sizes)), repeat=2):
+        if sign := surface.sign[row][column]:
+            left, right = (number(x(edges[column + i])) for i in (0, 1))
+            low, high = (number(y(edges[row + i])) for i in (0, 1))
+            size = abs(surface.difference[row][column])
+            shade = next(shade for least, shade in _SHADES if size >= least)
+            drawn.setdefault((sign, shade), []).append(f"M{left} {low}H{right}V{high}H{left}Z")
+    for (sign, shade), pieces in sorted(drawn.items()):
+        side = "repair-only" if sign > 0 else "baseline-only"
+        svg.path("".join(pieces), side, fill_opacity=shade, shape_rendering="crispEdges")
+    marked = [piece for (sign, _), pieces in drawn.items() for piece in pieces if sign < 0]
+    if marked:
+        svg.path("".join(marked), "", fill=hatch, fill_opacity="0.5", stroke="none")
+
+
+def _zero(record: MapResult, x: Axis, y: Axis) -> Iterator[str]:
+    """Yield a stroke for each cell of the lattice that the estimate's zero crosses."""
+    sizes, heights = record.surface.sizes, record.surface.difference
+    ends = (sizes[0], sizes[-1])
+    for row, column in product(range(len(sizes) - 1), repeat=2):
+        around = [(row, column), (row, column + 1), (row + 1, column + 1), (row + 1, column)]
+        crossings: list[Point] = []
+        for (r1, c1), (r2, c2) in pairwise([*around, around[0]]):
+            a, b = heights[r1][c1], heights[r2][c2]
+            if (a > 0) != (b > 0):
+                share = a / (a - b)
+                across = sizes[c1] + share * (sizes[c2] - sizes[c1])
+                upward = sizes[r1] + share * (sizes[r2] - sizes[r1])
+                crossings.append((across, upward))
+        for one, two in zip(crossings[::2], crossings[1::2], strict=True):
+            # One along the frame, where the estimate is exactly 0, divides nothing.
+            if not any(one[axis] == two[axis] and one[axis] in ends for axis in (0, 1)):
+                start, end = (f"{number(x(at))} {number(y(up))}" for at, up in (one, two))
+                yield f"M{start}L{end}"
+
+
+def _key(svg: Svg, record: MapResult, hatch: str) -> None:
+    """Draw what is compared, the scale of what is decided, and what is not."""
+    question, cell = record.question, 46.0
+    end = 6 * cell
+    title = f"Success of {question.repair} minus that of {question.baseline}, pp"
+    svg.text(0, 13, title, "head", room=svg.width)
+    for name, left, anchor in ((question.baseline, 0.0, "start"), (question.repair, end, "end")):
+        svg.text(left, 32, f"{name} ahead", anchor=anchor, room=end / 2 - 6)
+    shades = [shade for _, shade in _SHADES]
+    for column, shade in enumerate((*shades, *reversed(shades))):
+        side = "baseline-only" if column < len(shades) else "repair-only"
+        piece = f"M{number(column * cell)} 38h{number(cell)}v12h-{number(cell)}Z"
+        svg.path(piece, side, fill_opacity=shade)
+        if column < len(shades):
+            svg.path(piece, "", fill=hatch, fill_opacity="0.5")
+    bounds = [least for least, _ in _SHADES]
+    for column, value in enumerate((*(-bound for bound in bounds), *reversed(bounds[:-1])), 1):
+        label = f"{value:+.0f}".replace("-", "−") if value else "0"
+        svg.text(column * cell, 63, label, "small soft", "middle")
+    with svg.group("legend"):
+        svg.path("M0 74h22v11h-22Z", "inner")
+        beside = _entry(svg, 0, 84, "not significant")
+        svg.line((beside, 80), (beside + 22, 80), "range")
+        _entry(svg, beside, 84, f"estimate {_EQUAL}")
+        svg.circle((11, 100), 2.6, "dot")
+        beside = _entry(svg, 0, 104, "run, significant")
+        svg.circle((beside + 11, 100), 2.6, "dot open")
+        _entry(svg, beside, 104, "run, not significant")
+
+
+def _entry(svg: Svg, left: float, y: float, words: str) -> float:
+    """Write what a mark of the key means beside it; return where the next one may begin."""
+    svg.text(left + 28, y, words)
+    return left + 28 + text_width(words, 12) + 14
+
+
+def correlation_picture(record: MapResult) -> Svg:
+    """Return the expected difference over the correlation, in a variant's colour where decided."""
+    joint, question, facts = record.joint, record.question, record.facts
+    description = "; ".join(
+        f"{e.correlation:g}: {wording.plain(e.value)} pp" for e in joint.requested
+    )
+    width = _LEFT + _SIDE + _RIGHT
+    svg = Svg(width, 286, f"Expected difference over the correlation, {facts.system}", description)
+    x = Axis(-1.0, 1.0, 40, width - 10)
+    vertical = covering([end for e in joint.curve for end in (e.low, e.high)], least=10.0)
+    y = vertical.at(238, 44)
+    title = f"Expected success of {question.repair} minus that of {question.baseline}, pp"
+    svg.text(0, 13, title, "head", room=width)
+    svg.text(0, 28, _EQUAL, "small soft")
+    draw_axes(svg, x, y, 5, (-1.0, -0.5, 0.0, 0.5, 1.0))
+    svg.text(x(0.0), 274, "correlation of the two errors", "small soft", "middle")
+    upper = [(x(e.correlation), y(e.high)) for e in joint.curve]
+    lower = [(x(e.correlation), y(e.low)) for e in joint.curve]
+    svg.polygon([*upper, *reversed(lower)], "fan")
+    sides = {1: "curve repair", -1: "curve baseline", 0: "curve"}
+    for one, two in pairwise(joint.curve):
+        side = sides[one.sign if one.sign == two.sign else 0]
+        svg.line((x(one.correlation), y(one.value)), (x(two.correlation), y(two.value)), side)
+    for low, high in joint.undecided:
+        svg.line((x(low), y(0)), (x(high), y(0)), "star-range")
+    for at in joint.estimates:
+        svg.circle((x(at), y(0)), 5, "star", tip=f"estimate: no difference at {at:.2f}")
+    return svg
+
+
 def page(record: MapResult, provenance: RunProvenance) -> str:
     """Return the map as one page that opens without a network."""
     *turns, conditions = tables(record)
@@ -113,6 +279,6 @@ def write_map(record: MapResult, provenance: RunProvenance, folder: Path) -> lis
         "report.html": page(record, provenance),
         "map.svg": map_picture(record).render(standalone=True) + "\n",
         "correlation.svg": correlation_picture(record).render(standalone=True) + "\n",
-        "table.md": blocks(tables(record)) + "\n",
+        "table.md": markdown_blocks(tables(record)) + "\n",
     }
     return write_pages(pages, folder)

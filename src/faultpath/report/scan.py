@@ -9,12 +9,9 @@ from faultpath.analyses.scan.sources import Candidate, Ranking
 from faultpath.core.text import counted
 from faultpath.report.frame import render, write_pages
 from faultpath.report.scan_pictures import letters, strip, triangle
-from faultpath.report.sentences import wording
+from faultpath.report.sentences import wording, words
 from faultpath.report.sentences.scan import named, of_pair, size
-from faultpath.report.sentences.words import words
-from faultpath.report.tables import Entry, Line, Table, line
-from faultpath.report.tables.html import html
-from faultpath.report.tables.markdown import blocks
+from faultpath.report.tables import Entry, Line, Table, html, line, markdown_blocks
 from faultpath.run.provenance import RunProvenance
 
 _MOST_PAIRS = 10
@@ -195,7 +192,7 @@ def write_scan(record: ScanResult, provenance: RunProvenance, folder: Path) -> l
         if version.singles:
             name = "scan.svg" if number == 1 else f"scan-{number}.svg"
             pages[name] = triangle(record, version).render(standalone=True) + "\n"
-    pages["table.md"] = blocks(every_table(record)) + "\n"
+    pages["table.md"] = markdown_blocks(every_table(record)) + "\n"
     return write_pages(pages, folder)
 
 

@@ -8,7 +8,7 @@ from functools import cache
 from hashlib import blake2b
 from importlib import resources
 
-from faultpath.report.tables.escapes import html as escape
+from faultpath.report.escapes import html as escape
 
 Point = tuple[float, float]
 

@@ -7,8 +7,7 @@ from markupsafe import Markup
 from faultpath.report.frame import render
 from faultpath.report.sentences import wording
 from faultpath.report.svg import Axis, Svg, draw_axes, text_width, tick_label
-from faultpath.report.tables import Table
-from faultpath.report.tables.html import html
+from faultpath.report.tables import Table, html
 from faultpath.run.provenance import RunProvenance
 from faultpath_paper.answers import Point, Reproduction, Series, Sweep
 from faultpath_paper.central import QUESTION

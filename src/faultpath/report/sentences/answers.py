@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from faultpath.analyses.model import CORRECT, SHARED, AuditResult, Invalid, where
 from faultpath.core.text import capital, counted, series
-from faultpath.report.sentences import phrases, shares
+from faultpath.report.sentences import phrases
 from faultpath.report.sentences.headline import reversed_at
 from faultpath.report.sentences.phrases import margin, places
 from faultpath.report.sentences.wording import detectable, signed
@@ -106,7 +106,7 @@ def _follows(record: AuditResult) -> Iterator[str]:
         yield "Which is better depends on which fault occurs, and how often."
     for result in record.break_even if disagree else ():
         if result.condition == record.facts.primary and result.ahead:
-            place, words = where(result.condition), shares.ahead(record.question, result)
+            place, words = where(result.condition), phrases.ahead(record.question, result)
             yield f"Depending on how often the fault occurs, {place}: {words}."
 
 

@@ -4,7 +4,14 @@ from collections.abc import Iterator, Sequence
 
 from faultpath.analyses.effects import Change, Effect
 from faultpath.analyses.facts import ComparisonFacts, Facts, Question
-from faultpath.analyses.model import CORRECT, SHARED, AuditResult, Invalid, where
+from faultpath.analyses.model import (
+    CORRECT,
+    SHARED,
+    AuditResult,
+    ConditionBreakEven,
+    Invalid,
+    where,
+)
 from faultpath.core.text import capital, series
 from faultpath.report.sentences.wording import interval, p_equals, p_value, signed, with_interval
 from faultpath.stats.distributions import sign_p_value
@@ -247,3 +254,25 @@ def stopping(record: AuditResult) -> str:
         f"{record.facts.n_scenes}; the order of its scenes was drawn beforehand from the hash "
         f"of the library and the seed {order.seed}"
     )
+
+
+FREQUENCY = {
+    "everywhere": "at every frequency",
+    "many": "where the fault is frequent; how rare it may be is open",
+    "few": "where the fault is rare; how frequent it may be is open",
+}
+BETA = {
+    "everywhere": "at every beta",
+    "many": "where most of its faults are common cause; how few may be is open",
+    "few": "where few of its faults are common cause; how many may be is open",
+}
+
+
+def ahead(question: Question, share: ConditionBreakEven, beta: bool = False) -> str:
+    """Return who is ahead at which frequencies of the fault, or at which beta; empty for nobody."""
+    clauses: list[str] = []
+    for part in share.ahead:
+        version = question.repair if part.sign > 0 else question.baseline
+        where = (BETA if beta else FREQUENCY).get(part.where, f"{part.where} {part.percent} %")
+        clauses.append(f"{version} is ahead {where}{' on' if part.where == 'from' else ''}")
+    return ", ".join(clauses)
