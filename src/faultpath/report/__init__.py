@@ -1,1 +1,1 @@
-"""Reports from records and outcome tables: one HTML page, Markdown and the terminal."""
+"""Reports from results and outcome tables: one HTML page, Markdown and the terminal."""

@@ -1,6 +1,6 @@
-"""Finished audits side by side, and what differs between them.
+"""Finished audits beside each other as data: effects, and what differs between the runs.
 
-Every audit keeps its own verdict. Only sizes of one fault are decided anew, as one family.
+Every audit keeps its own result. Only sizes of one fault are decided anew, as one family.
 """
 
 import re
@@ -14,7 +14,6 @@ from faultpath.analyses.model import CORRECT, SHARED, AuditResult
 from faultpath.analyses.sweep import decide_sizes
 from faultpath.report.inputs import ReportInput
 from faultpath.report.sentences import phrases, wording
-from faultpath.report.sentences.findings import of_audit
 from faultpath.report.sentences.headline import headline
 from faultpath.run.provenance import RunProvenance
 from faultpath.stats.estimate import Sign
@@ -64,16 +63,6 @@ class Compared:
             e.sign and not family.get(e.condition, (e.sign, 0))[0] for e in self.record.effects
         )
         return f"By itself, and not over all sizes: {own}" if fallen else own
-
-    @property
-    def scenes_run(self) -> str:
-        """The number of scenes, and of how many where it could have taken more."""
-        return phrases.scenes_run(self.record)
-
-    @property
-    def findings(self) -> tuple[str, ...]:
-        """What was found in its trials, in words."""
-        return of_audit(self.record)
 
     def absent(self, condition: str) -> str:
         """Say why it has no effect under a condition."""

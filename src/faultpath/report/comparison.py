@@ -1,4 +1,4 @@
-"""Audits side by side, as a table, on the terminal, and as one page that needs no network."""
+"""Finished audits beside each other in words, as tables, on the terminal and as a page."""
 
 from collections.abc import Iterator, Sequence
 
@@ -23,6 +23,8 @@ from faultpath.report.compared import (
 from faultpath.report.effects import Row, panel, shared_axis
 from faultpath.report.frame import render
 from faultpath.report.sentences import wording
+from faultpath.report.sentences.findings import of_audit
+from faultpath.report.sentences.phrases import scenes_run
 from faultpath.report.svg import tick_label
 from faultpath.report.tables import MISSING, Entry, Line, Table, html, line
 from faultpath.report.terminal import Parted, drawn
@@ -176,8 +178,7 @@ def shown(runs: Sequence[Compared]) -> RenderableType:
     facts = differing(runs)
     parts: list[RenderableType] = [Text(headline(runs), style="bold"), Text("")]
     for run in runs:
-        verdict = Padding.indent(Text(run.headline), 3)
-        parts += [Text(f"{run.number}  {run.folder}"), verdict]
+        parts += [Text(f"{run.number}  {run.folder}"), Padding.indent(Text(run.headline), 3)]
     parts += [Text(""), Parted(_short(effects(runs))), Text("")]
     parts += [drawn(facts_table(runs, facts))] if facts else [Text(same(runs))]
     return Group(*parts, Text(""), *map(Text, sentences(runs)))
@@ -194,7 +195,7 @@ def page(runs: Sequence[Compared]) -> str:
     facts = differing(runs)
     panels: dict[str, list[Row]] = {
         title: [
-            (label, "", run.effect(condition) or run.absent(condition))
+            (label, run.effect(condition) or run.absent(condition))
             for label, run in zip(labels(runs), runs, strict=True)
         ]
         for condition, title in titles(runs).items()
@@ -205,7 +206,7 @@ def page(runs: Sequence[Compared]) -> str:
         "comparison.html.j2",
         headline=headline(runs),
         sentences=sentences(runs),
-        runs=runs,
+        runs=[(run, scenes_run(run.record), of_audit(run.record)) for run in runs],
         panels=[Markup(panel(title, rows, axis)) for title, rows in panels.items()],
         effects=Markup(html(effects(runs))),
         facts=Markup(html(facts_table(runs, facts))) if facts else "",

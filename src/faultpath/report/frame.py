@@ -70,7 +70,9 @@ def write_pages(files: Mapping[str, str], folder: Path) -> list[Path]:
     elif not is_run(folder) and (
         others := [name for name in files if os.path.lexists(folder / name)]
     ):
-        raise UserError(f"{folder} holds {others[0]}, which is not of this run: give a new folder.")
+        raise UserError(
+            f"{folder} already holds {others[0]}, which this run did not write: give a new folder."
+        )
     make_folder(folder)
     for name, text in files.items():
         write_text(folder / name, text, folder)

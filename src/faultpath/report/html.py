@@ -17,7 +17,7 @@ from faultpath.report.audit_tables import (
     median_time,
     secondary,
 )
-from faultpath.report.effects import effect_axis, effect_rows, frequency_panels, no_break_even
+from faultpath.report.effects import effect_rows, share_panels
 from faultpath.report.frame import STYLES, render, write_pages
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pair_grid import pair_grid, pair_key
@@ -30,26 +30,28 @@ from faultpath.report.viewer import viewer_data
 
 def report_page(source: ReportInput) -> str:
     """Return the whole report as HTML: styles, scripts, pictures and data inside."""
-    record, question, facts = source.record, source.record.question, source.record.facts
-    pairs, sampled = read_pairs(source.trials, record), is_sample(source.trials)
+    result, question, facts = source.record, source.record.question, source.record.facts
+    pairs, sampled = read_pairs(source.trials, result), is_sample(source.trials)
     ended_as = {
-        condition.name: counts(source.trials, record, condition.name)
-        for condition in record.conditions
+        condition.name: counts(source.trials, result, condition.name)
+        for condition in result.conditions
     }
     viewer = viewer_data(source, pairs)
     shown = viewer.shown if viewer else ()
-    titles = record.titles
-    decided = any(effect.sign for effect in record.effects)
-    why = adding(source, pairs) if decided else None
-    tables = (ended(record), secondary(record))
-    same = constant(record, SHOWN)
+    titles = result.titles
+    significant = any(effect.sign for effect in result.effects)
+    why = adding(source, pairs) if significant else None
+    tables = (ended(result), secondary(result))
+    effects, axis = effect_rows(result)
+    (frequency, no_frequency), (beta, no_beta) = (share_panels(result, b) for b in (False, True))
+    same = constant(result, SHOWN)
     shown_columns = [name for name in SHOWN if name not in same]
     return render(
         "report.html.j2",
         (*STYLES, "viewer.css"),
         ("cells.js", "page.js", "viewer.js"),
-        record=record,
-        words=words(record),
+        result=result,
+        words=words(result),
         estimand=phrases.estimand(question, facts),
         question=question,
         facts=facts,
@@ -58,30 +60,30 @@ def report_page(source: ReportInput) -> str:
         n_trials=len(source.trials),
         conditions=titles,
         names=(question.baseline, question.repair),
-        plain=answers(record),
-        scenes_run=phrases.scenes_run(record),
-        stopping=phrases.stopping(record),
-        finding=_finding(record),
-        changes=[(moved.turn, phrases.change(record, moved)) for moved in record.changes],
+        plain=answers(result),
+        scenes_run=phrases.scenes_run(result),
+        stopping=phrases.stopping(result),
+        finding=_finding(result),
+        changes=[(moved.turn, phrases.change(result, moved)) for moved in result.changes],
         adding=why,
         adding_panels=list(map(Markup, adding_panels(why))) if why else (),
-        void=[pair for pair in pairs if pair.kind is PairKind.VOID],
-        n_void=sum(of[PairKind.VOID] for of in ended_as.values()),
+        missing=[pair for pair in pairs if pair.kind is PairKind.VOID],
+        n_missing=sum(of[PairKind.VOID] for of in ended_as.values()),
         n_pairs=sum(sum(of.values()) for of in ended_as.values()),
         sampled=len({pair.scene for pair in pairs}) if sampled else 0,
         n_scenes=len(source.trials.scenes),
-        effects=effect_rows(record),
-        axis=effect_axis(record),
-        numbers=Markup(html(by_condition(record, shown_columns, "Effects; bold is significant"))),
-        same=" ".join(filter(None, (*same.values(), median_time(record)))),
-        tests=phrases.tests(record),
+        effects=effects,
+        axis=axis,
+        numbers=Markup(html(by_condition(result, shown_columns, "Effects; bold is significant"))),
+        same=" ".join(filter(None, (*same.values(), median_time(result)))),
+        tests=phrases.tests(result),
         fault=_fault(source),
         variants=list(zip(("baseline", "repair"), source.system.variants, strict=True)),
         forks=[Markup(fork_panel(fork)) for fork in forks(source)],
-        frequency=[(Markup(picture), words) for picture, words in frequency_panels(record)],
-        no_frequency=no_break_even(record),
-        beta=[(Markup(picture), words) for picture, words in frequency_panels(record, beta=True)],
-        no_beta=no_break_even(record, beta=True),
+        frequency=[(Markup(picture), text) for picture, text in frequency],
+        no_frequency=no_frequency,
+        beta=[(Markup(picture), text) for picture, text in beta],
+        no_beta=no_beta,
         grids=[
             (
                 name,
@@ -119,13 +121,13 @@ def write_report(source: ReportInput, folder: Path) -> list[Path]:
     return write_pages(pages, folder)
 
 
-def _finding(record: AuditResult) -> list[tuple[Effect, str]]:
+def _finding(result: AuditResult) -> list[tuple[Effect, str]]:
     """Return the two effects of a reversal, each with where it holds; without one, nothing.
 
     Of an interaction only the change is decided: an effect by itself may be a point estimate.
     """
-    for moved in record.changes:
+    for moved in result.changes:
         if moved.turn == "reversal":
-            ends = ((record.effect(end), where(end)) for end in (moved.isolated, SHARED))
+            ends = ((result.effect(end), where(end)) for end in (moved.isolated, SHARED))
             return [(effect, place) for effect, place in ends if effect]
     return []

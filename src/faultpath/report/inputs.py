@@ -11,7 +11,7 @@ from faultpath.run.store.tables import TrialAddress
 
 @dataclass(frozen=True)
 class ReportInput:
-    """One finished audit: the record, where it came from, and the trials behind it."""
+    """One finished audit: the result, where it came from, and the trials behind it."""
 
     record: AuditResult
     provenance: RunProvenance

@@ -1,4 +1,4 @@
-"""A map as tables, pictures, terminal and page; all numbers are the record's."""
+"""A map as tables, pictures, terminal and page; all numbers are the result's."""
 
 from collections.abc import Iterator
 from itertools import pairwise, product
@@ -19,7 +19,10 @@ from faultpath.report.svg import (
     Svg,
     covering,
     draw_axes,
+    draw_band,
+    draw_scale,
     number,
+    shade,
     text_width,
     tick_label,
 )
@@ -30,23 +33,21 @@ from faultpath.stats.power import MIN_SCENES
 _SIDE = 340.0
 """Side of the square, in pixels."""
 _LEFT, _RIGHT, _TOP = 40.0, 104.0, 168.0
-_SHADES = ((30.0, "0.62"), (10.0, "0.42"), (0.0, "0.22"))
-"""From which difference on, pp, an area has which opacity."""
 _EQUAL = "0: both succeed equally often"
 
 
-def tables(record: MapResult) -> tuple[Table, ...]:
+def tables(result: MapResult) -> tuple[Table, ...]:
     """Return how large an error reverses the ranking, and the differences at one or equal errors.
 
     With too few scenes for a significant difference there is no ranking that could reverse.
     """
-    flips = (_flips(record),) if record.scenes >= MIN_SCENES else ()
-    return *flips, _conditions(record)
+    flips = (_flips(result),) if result.scenes >= MIN_SCENES else ()
+    return *flips, _conditions(result)
 
 
-def _conditions(record: MapResult) -> Table:
-    question, facts = record.question, record.facts
-    of = {point.errors: point for point in record.points}
+def _conditions(result: MapResult) -> Table:
+    question, facts = result.question, result.facts
+    of = {point.errors: point for point in result.points}
     lines: list[Line] = []
     for size in sorted({x or y for x, y in of if x == y or not x or not y}):
         entries: list[Entry] = []
@@ -64,22 +65,22 @@ def _conditions(record: MapResult) -> Table:
         columns=(*(f"{name} alone" for name in facts.modules), "shared"),
         lines=tuple(lines),
         notes=(
-            f"{counted(record.scenes, 'scene')} of {facts.library}, "
-            f"{wording.seeds(question.seeds)}. Intervals hold at all {len(record.points)} pairs of "
+            f"{counted(result.scenes, 'scene')} of {facts.library}, "
+            f"{wording.seeds(question.seeds)}. Intervals hold at all {len(result.points)} pairs of "
             "errors at once. Significant: the interval leaves out 0, and a sign test agrees.",
         ),
     )
 
 
-def _flips(record: MapResult) -> Table:
-    facts = record.facts
+def _flips(result: MapResult) -> Table:
+    facts = result.facts
     lines: list[Line] = []
-    for flip in record.flips:
+    for flip in result.flips:
         kept = turned = "neither"
         if flip.start and flip.until is not None:
-            kept = f"{record.winner(flip.start)}, {size_label(facts, flip.until)}"
+            kept = f"{result.winner(flip.start)}, {size_label(facts, flip.until)}"
         if flip.turned and flip.first is not None and flip.last is not None:
-            turned = f"{record.winner(flip.turned)}, {size_label(facts, flip.first)}"
+            turned = f"{result.winner(flip.turned)}, {size_label(facts, flip.first)}"
             if abs(flip.last) < facts.up_to:
                 turned += f" to {size_label(facts, flip.last)}"
         condition = SHARED if flip.condition == SHARED else f"{flip.condition} alone"
@@ -101,17 +102,17 @@ def _flips(record: MapResult) -> Table:
     )
 
 
-def map_picture(record: MapResult) -> Svg:
+def map_picture(result: MapResult) -> Svg:
     """Return the map: who is decided to be ahead where, the estimate's zero, conditions and
     points."""
-    question, facts, side = record.question, record.facts, _SIDE
+    question, facts, side = result.question, result.facts, _SIDE
     title = f"Reversal map of {facts.system}: {question.repair} against {question.baseline}"
-    svg = Svg(_LEFT + side + _RIGHT, _TOP + side + 48, title, headline(record))
+    svg = Svg(_LEFT + side + _RIGHT, _TOP + side + 48, title, headline(result))
     x = Axis(-facts.up_to, facts.up_to, _LEFT, _LEFT + side)
     y = Axis(-facts.up_to, facts.up_to, _TOP + side, _TOP)
     hatch = svg.hatch("baseline", "range baseline", 6)
-    _key(svg, record, hatch)
-    _areas(svg, record, x, y, hatch)
+    _key(svg, result, hatch)
+    _areas(svg, result, x, y, hatch)
     svg.path(
         f"M{number(x.start)} {number(y.start)}H{number(x.end)}V{number(y.end)}H{number(x.start)}Z",
         "inner",
@@ -127,10 +128,10 @@ def map_picture(record: MapResult) -> Svg:
         svg.text(left, up, name, "bold", anchor, room=_RIGHT - 8)
         svg.text(left, up + 14, "alone", "bold", anchor)
     svg.text(x.end + 6, y.end + 4, "shared", "bold")
-    svg.path(" ".join(_zero(record, x, y)), "range")
-    for point in record.points:
+    svg.path(" ".join(_zero(result, x, y)), "range")
+    for point in result.points:
         at = x(point.errors[0]), y(point.errors[1])
-        svg.circle(at, 2.6, "dot" if point.sign else "dot open", tip=at_point(record, point))
+        svg.circle(at, 2.6, "dot" if point.sign else "dot open", tip=at_point(result, point))
     # What a relative error is asked as is a share, and read as percent.
     reach, unit = (100 * facts.up_to, "%") if facts.relative else (facts.up_to, facts.unit)
     x, y = Axis(-reach, reach, x.start, x.end), Axis(-reach, reach, y.start, y.end)
@@ -145,29 +146,28 @@ def map_picture(record: MapResult) -> Svg:
     return svg
 
 
-def _areas(svg: Svg, record: MapResult, x: Axis, y: Axis, hatch: str) -> None:
+def _areas(svg: Svg, result: MapResult, x: Axis, y: Axis, hatch: str) -> None:
     """Fill what is decided, a piece around each place of the lattice; the rest stays empty."""
-    sizes, surface = record.surface.sizes, record.surface
+    sizes, surface = result.surface.sizes, result.surface
     edges = [sizes[0], *((a + b) / 2 for a, b in pairwise(sizes)), sizes[-1]]
     drawn: dict[tuple[int, str], list[str]] = {}
     for row, column in product(range(len(sizes)), repeat=2):
         if sign := surface.sign[row][column]:
             left, right = (number(x(edges[column + i])) for i in (0, 1))
             low, high = (number(y(edges[row + i])) for i in (0, 1))
-            size = abs(surface.difference[row][column])
-            shade = next(shade for least, shade in _SHADES if size >= least)
-            drawn.setdefault((sign, shade), []).append(f"M{left} {low}H{right}V{high}H{left}Z")
-    for (sign, shade), pieces in sorted(drawn.items()):
+            opacity = shade(surface.difference[row][column])
+            drawn.setdefault((sign, opacity), []).append(f"M{left} {low}H{right}V{high}H{left}Z")
+    for (sign, opacity), pieces in sorted(drawn.items()):
         side = "repair-only" if sign > 0 else "baseline-only"
-        svg.path("".join(pieces), side, fill_opacity=shade, shape_rendering="crispEdges")
+        svg.path("".join(pieces), side, fill_opacity=opacity, shape_rendering="crispEdges")
     marked = [piece for (sign, _), pieces in drawn.items() for piece in pieces if sign < 0]
     if marked:
         svg.path("".join(marked), "", fill=hatch, fill_opacity="0.5", stroke="none")
 
 
-def _zero(record: MapResult, x: Axis, y: Axis) -> Iterator[str]:
+def _zero(result: MapResult, x: Axis, y: Axis) -> Iterator[str]:
     """Yield a stroke for each cell of the lattice that the estimate's zero crosses."""
-    sizes, heights = record.surface.sizes, record.surface.difference
+    sizes, heights = result.surface.sizes, result.surface.difference
     ends = (sizes[0], sizes[-1])
     for row, column in product(range(len(sizes) - 1), repeat=2):
         around = [(row, column), (row, column + 1), (row + 1, column + 1), (row + 1, column)]
@@ -186,25 +186,15 @@ def _zero(record: MapResult, x: Axis, y: Axis) -> Iterator[str]:
                 yield f"M{start}L{end}"
 
 
-def _key(svg: Svg, record: MapResult, hatch: str) -> None:
+def _key(svg: Svg, result: MapResult, hatch: str) -> None:
     """Draw what is compared, the scale of what is decided, and what is not."""
-    question, cell = record.question, 46.0
+    question, cell = result.question, 46.0
     end = 6 * cell
     title = f"Success of {question.repair} minus that of {question.baseline}, pp"
     svg.text(0, 13, title, "head", room=svg.width)
     for name, left, anchor in ((question.baseline, 0.0, "start"), (question.repair, end, "end")):
         svg.text(left, 32, f"{name} ahead", anchor=anchor, room=end / 2 - 6)
-    shades = [shade for _, shade in _SHADES]
-    for column, shade in enumerate((*shades, *reversed(shades))):
-        side = "baseline-only" if column < len(shades) else "repair-only"
-        piece = f"M{number(column * cell)} 38h{number(cell)}v12h-{number(cell)}Z"
-        svg.path(piece, side, fill_opacity=shade)
-        if column < len(shades):
-            svg.path(piece, "", fill=hatch, fill_opacity="0.5")
-    bounds = [least for least, _ in _SHADES]
-    for column, value in enumerate((*(-bound for bound in bounds), *reversed(bounds[:-1])), 1):
-        label = f"{value:+.0f}".replace("-", "−") if value else "0"
-        svg.text(column * cell, 63, label, "small soft", "middle")
+    draw_scale(svg, cell, ("−30", "−10", "0", "+10", "+30"), hatch)
     with svg.group("legend"):
         svg.path("M0 74h22v11h-22Z", "inner")
         beside = _entry(svg, 0, 84, "not significant")
@@ -222,9 +212,9 @@ def _entry(svg: Svg, left: float, y: float, words: str) -> float:
     return left + 28 + text_width(words, 12) + 14
 
 
-def correlation_picture(record: MapResult) -> Svg:
+def correlation_picture(result: MapResult) -> Svg:
     """Return the expected difference over the correlation, in a variant's colour where decided."""
-    joint, question, facts = record.joint, record.question, record.facts
+    joint, question, facts = result.joint, result.question, result.facts
     description = "; ".join(
         f"{e.correlation:g}: {wording.plain(e.value)} pp" for e in joint.requested
     )
@@ -238,9 +228,7 @@ def correlation_picture(record: MapResult) -> Svg:
     svg.text(0, 28, _EQUAL, "small soft")
     draw_axes(svg, x, y, 5, (-1.0, -0.5, 0.0, 0.5, 1.0))
     svg.text(x(0.0), 274, "correlation of the two errors", "small soft", "middle")
-    upper = [(x(e.correlation), y(e.high)) for e in joint.curve]
-    lower = [(x(e.correlation), y(e.low)) for e in joint.curve]
-    svg.polygon([*upper, *reversed(lower)], "fan")
+    draw_band(svg, ((x(e.correlation), y(e.low), y(e.high)) for e in joint.curve))
     sides = {1: "curve repair", -1: "curve baseline", 0: "curve"}
     for one, two in pairwise(joint.curve):
         side = sides[one.sign if one.sign == two.sign else 0]
@@ -252,33 +240,33 @@ def correlation_picture(record: MapResult) -> Svg:
     return svg
 
 
-def page(record: MapResult, provenance: RunProvenance) -> str:
+def page(result: MapResult, provenance: RunProvenance) -> str:
     """Return the map as one page that opens without a network."""
-    *turns, conditions = tables(record)
+    *turns, conditions = tables(result)
     return render(
         "map.html.j2",
-        record=record,
-        question=record.question,
-        facts=record.facts,
+        result=result,
+        question=result.question,
+        facts=result.facts,
         provenance=provenance,
-        words=words(record),
-        up_to=size_label(record.facts, record.facts.up_to),
-        map=Markup(map_picture(record).render()),
-        curve=Markup(correlation_picture(record).render()),
+        words=words(result),
+        up_to=size_label(result.facts, result.facts.up_to),
+        map=Markup(map_picture(result).render()),
+        curve=Markup(correlation_picture(result).render()),
         flips=Markup(html(turns[0])) if turns else "",
         flips_notes=turns[0].notes if turns else (),
         conditions=Markup(html(conditions)),
-        estimand=scenes_like_these(record.facts),
+        estimand=scenes_like_these(result.facts),
         conditions_notes=conditions.notes,
     )
 
 
-def write_map(record: MapResult, provenance: RunProvenance, folder: Path) -> list[Path]:
+def write_map(result: MapResult, provenance: RunProvenance, folder: Path) -> list[Path]:
     """Write `report.html`, `map.svg`, `correlation.svg` and `table.md`; return their paths."""
     pages = {
-        "report.html": page(record, provenance),
-        "map.svg": map_picture(record).render(standalone=True) + "\n",
-        "correlation.svg": correlation_picture(record).render(standalone=True) + "\n",
-        "table.md": markdown_blocks(tables(record)) + "\n",
+        "report.html": page(result, provenance),
+        "map.svg": map_picture(result).render(standalone=True) + "\n",
+        "correlation.svg": correlation_picture(result).render(standalone=True) + "\n",
+        "table.md": markdown_blocks(tables(result)) + "\n",
     }
     return write_pages(pages, folder)

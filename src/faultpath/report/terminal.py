@@ -31,53 +31,53 @@ _ROOMY = 5
 _EFFECTS = (*DIFFERENCE, "holm", "scenes", "void", "break-even")
 
 
-def decision(record: AuditResult, details: bool = False) -> RenderableType:
+def decision(result: AuditResult, details: bool = False) -> RenderableType:
     """Return the result of an audit as text and tables: headline, success, effects, findings.
 
-    `details` adds every sentence of the record, and what would change it.
+    `details` adds every sentence of the result, and what would change it.
     """
-    question, text = record.question, words(record)
-    void = any(effect.void for effect in record.effects)
+    question, text = result.question, words(result)
+    void = any(effect.void for effect in result.effects)
     names = [name for name in _EFFECTS if void or name != "void"]
-    success = by_quantity(record, ("baseline", "repair"))
-    effects = by_condition(record, names, f"{question.repair} minus {question.baseline}")
+    success = by_quantity(result, ("baseline", "repair"))
+    effects = by_condition(result, names, f"{question.repair} minus {question.baseline}")
     parts: list[RenderableType] = [Text(text.headline, style="bold")]
     parts += _list("Found in the run", text.findings, "bold red")
     about: list[RenderableType] = []
-    if fault := wording.faults(record.facts):
+    if fault := wording.faults(result.facts):
         about += [Text(f"Fault: {fault}.", style="dim")]
-    if how := stopping(record):
+    if how := stopping(result):
         about += [Text(f"A sequential audit: {how}.")]
     parts += [Text(""), *about] if about and text.findings else about
     parts += [Text(""), Parted(success), Text(""), Parted(effects)]
-    if any(share.result.kind in ("interval", "two pieces") for share in record.break_even):
+    if any(share.result.kind in ("interval", "two pieces") for share in result.break_even):
         explained = (
             "Break-even, % of trials with the fault: the estimate where there is one, and in "
             "brackets where neither is shown to be ahead; none: one is ahead everywhere; any: no "
             "bound could be shown."
         )
         parts += [Text(explained, style="dim")]
-    plain = answers(record)
-    if not details and (follows := plain.get("Left open" if record.invalid else "What follows")):
+    plain = answers(result)
+    if not details and (follows := plain.get("Left open" if result.invalid else "What follows")):
         parts += [Text(""), Text(follows)]
     # Among all sentences these stand anyway.
-    caveats = (*not_standing(record), *in_trials_that_ran(record), *for_trainings(record))
+    caveats = (*not_standing(result), *in_trials_that_ran(result), *for_trainings(result))
     for sentence in () if details else caveats:
         parts += [Text(""), Text(sentence)]
-    table = chosen_metric(record)
+    table = chosen_metric(result)
     if table is not None:
         parts += [Text(""), Parted(table)]
     if details:
-        if any(effect.mcnemar_p is not None for effect in record.effects):
-            parts += [Text(""), Parted(by_condition(record, ("p", "mcnemar", "holm")))]
+        if any(effect.mcnemar_p is not None for effect in result.effects):
+            parts += [Text(""), Parted(by_condition(result, ("p", "mcnemar", "holm")))]
         parts += [Text(""), *map(Text, text.sentences)]
-        parts += _list("What would change this", tuple(would_change(record)), "bold")
+        parts += _list("What would change this", tuple(would_change(result)), "bold")
     return Group(*parts)
 
 
-def conclusion(record: MapResult | ScanResult, tables: Iterable[Table]) -> RenderableType:
+def conclusion(result: MapResult | ScanResult, tables: Iterable[Table]) -> RenderableType:
     """Return headline, sentences, findings and tables of a map or a scan."""
-    text = words(record)
+    text = words(result)
     parts: list[RenderableType] = [Text(text.headline, style="bold")]
     parts += _list("Found in the run", text.findings, "bold red")
     parts += [Text(""), *map(Text, text.sentences)]

@@ -154,15 +154,15 @@ def _space(source: ReportInput, flat: bool, tracked: bool) -> str:
     return "none" if not tracked else "line" if flat else "space"
 
 
-def _first_condition(record: AuditResult, pairs: Mapping[str, Pair]) -> str:
+def _first_condition(result: AuditResult, pairs: Mapping[str, Pair]) -> str:
     """Return the condition marked first: one on which the first scene shows what is significant."""
-    signs = {effect.condition: effect.sign for effect in record.effects if effect.leads}
+    signs = {effect.condition: effect.sign for effect in result.effects if effect.leads}
     apart = [
         condition
         for condition, pair in pairs.items()
         if pair.sign and signs.get(condition) == pair.sign
     ]
-    primary = record.facts.primary or SHARED
+    primary = result.facts.primary or SHARED
     return apart[0] if apart and primary not in apart else primary
 
 
@@ -202,8 +202,8 @@ class _Trials:
     def parting(self, pair: Pair) -> dict[str, Any] | None:
         """Return where the two trials part, in words and as steps; `None` where that was not
         recorded of both."""
-        record, signals = self.source.record, self.source.signals
-        names = record.question.baseline, record.question.repair
+        result, signals = self.source.record, self.source.signals
+        names = result.question.baseline, result.question.repair
         addresses = [TrialAddress(n, pair.condition, pair.seed, pair.scene) for n in names]
         if not all(signals.get(at) for at in addresses):
             return None
@@ -214,7 +214,7 @@ class _Trials:
         parted = parting(self.source.system, one, other)
         marks = [(first.step, DIFFERS[kind]) for kind, first in parted.first.items()]
         marks += ending(parted, self.source.system.control_dt_s)
-        return {"said": said(record.facts, parted), "marks": marks}
+        return {"said": said(result.facts, parted), "marks": marks}
 
     def _put(self, metres: NDArray[np.float32]) -> int:
         """Put coordinates into `series` as whole centimetres, and return where they begin."""

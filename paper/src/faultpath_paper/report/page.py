@@ -6,7 +6,7 @@ from markupsafe import Markup
 
 from faultpath.report.frame import render
 from faultpath.report.sentences import wording
-from faultpath.report.svg import Axis, Svg, draw_axes, text_width, tick_label
+from faultpath.report.svg import Axis, Svg, draw_axes, draw_band, text_width, tick_label
 from faultpath.report.tables import Table, html
 from faultpath.run.provenance import RunProvenance
 from faultpath_paper.answers import Point, Reproduction, Series, Sweep
@@ -60,8 +60,7 @@ def _axes(points: Sequence[Point]) -> tuple[Axis, Axis]:
 def _band(svg: Svg, line: Series, x: Axis, y: Axis, look: str) -> None:
     ends = [(p.x, p.low, p.high) for p in line.points if p.low is not None and p.high is not None]
     if len(ends) > 1:
-        upper = [(x(at), y(high)) for at, _, high in ends]
-        svg.polygon([*upper, *((x(at), y(low)) for at, low, _ in reversed(ends))], look)
+        draw_band(svg, ((x(at), y(low), y(high)) for at, low, high in ends), look)
 
 
 def _mark(svg: Svg, x: float, y: float, look: int, tip: str) -> None:

@@ -112,7 +112,7 @@ def ended(facts: ComparisonFacts, status: str) -> str:
 
 def faults(facts: ComparisonFacts, units: Mapping[str, str] | None = None) -> str:
     """Return what the fault does to each channel, whoever gets it, with the unit of what it adds
-    where `units` of channels are known; empty in records without it."""
+    where `units` of channels are known; empty in results without it."""
     words: list[str] = []
     for fault in facts.faults:
         of = (units or {}).get(fault.channel, "1")
