@@ -16,7 +16,7 @@ _MEDIAN = "median time of successes"
 DIFFERENCE = ("difference", "interval", "won")
 SHOWN = (*_VARIANTS, *DIFFERENCE, "holm", "power", "scenes", "void", "break-even")
 ALL = (
-    *(*_VARIANTS, *DIFFERENCE, "p", "mcnemar", "holm", "decided"),
+    *(*_VARIANTS, *DIFFERENCE, "p", "mcnemar", "holm", "ahead"),
     *("power", "scenes", "void", "break-even", "beta"),
 )
 _MEANS = {
@@ -49,7 +49,7 @@ def _quantities(
             "p, Holm" if result.stopped is None else "p, family",
             [_p(e.corrected_p) for e in effects],
         ),
-        "decided": ("Ahead", [decided_for(result, e) for e in effects]),
+        "ahead": ("Ahead", [version_ahead(result, e) for e in effects]),
         "scenes": ("Scenes", [str(e.scenes) for e in effects]),
         "void": ("Void pairs", list(map(_missing_pairs, effects))),
         "break-even": ("Break-even, %", _break_evens(result, result.break_even)),
@@ -82,7 +82,7 @@ def _break_evens(result: AuditResult, shares: Sequence[ConditionBreakEven]) -> l
     return [texts.get(effect.condition, MISSING) for effect in result.effects]
 
 
-def decided_for(result: AuditResult, effect: Effect) -> Entry:
+def version_ahead(result: AuditResult, effect: Effect) -> Entry:
     """Return the version that is significantly ahead, with what keeps it out of a headline; or the
     p-value for which the difference is not significant where the interval alone excludes 0."""
     if not effect.acted:
@@ -172,7 +172,7 @@ def markdown_table(result: AuditResult) -> str:
         *not_standing(result),
         headline(result),
     )
-    table, more = by_quantity(result, ALL), secondary(result)
+    table, more = by_quantity(result, ALL), secondary_table(result)
     lines = (*table.lines, line(more.title), *more.lines) if more else table.lines
     whole = table.model_copy(update={"title": title, "notes": notes, "lines": lines})
     return markdown_block(whole)
@@ -213,17 +213,17 @@ def _median(time_s: float | None) -> str:
     return MISSING if time_s is None else wording.plain(time_s, 2)
 
 
-def secondary(result: AuditResult) -> Table | None:
+def secondary_table(result: AuditResult) -> Table | None:
     """Return time and metrics, repair minus baseline, by condition, and success at each threshold
     of the chosen metric; `None` without any."""
     question = result.question
-    rows = {"time on joint successes (s)": [_estimate(of.time_s) for of in result.secondary]}
+    rows = {"time on joint successes (s)": [_estimate(s.time_s) for s in result.secondary]}
     for name, metric in result.facts.metrics.items():
         if name == question.metric:
             rows |= _chosen_metric(result, f", {question.baseline} → {question.repair}")
             continue
         label = f"{metric.label(name)} ({metric.unit})"
-        rows[label] = [_estimate(of.metrics.get(name)) for of in result.secondary]
+        rows[label] = [_estimate(s.metrics.get(name)) for s in result.secondary]
     shown = {label: row for label, row in rows.items() if set(row) != {MISSING}}
     if not shown:
         return None
@@ -262,21 +262,21 @@ def _chosen_metric(result: AuditResult, versions: str = "") -> dict[str, list[st
     sign = "≤" if metric.better == "less" else "≥"
     means: list[str] = []
     rows = {f"{label} ({metric.unit}){versions}": means}
-    for of in result.secondary:
-        difference = of.metrics.get(question.metric)
-        if difference is None or of.metric_means is None:
+    for secondary in result.secondary:
+        difference = secondary.metrics.get(question.metric)
+        if difference is None or secondary.metric_means is None:
             means.append(MISSING)
             continue
         digits = wording.digits_of(difference)
-        one, two = (wording.plain(mean, digits) for mean in of.metric_means)
+        one, two = (wording.plain(mean, digits) for mean in secondary.metric_means)
         means.append(f"{one} → {two}, {_estimate(difference)}")
     for number, at in enumerate(sorted(set(question.thresholds))):
         rates = rows[f"success if {label} {sign} {at:g} {metric.unit}, %"] = []
-        for of in result.secondary:
-            if len(of.thresholds) <= number:
+        for secondary in result.secondary:
+            if len(secondary.thresholds) <= number:
                 rates.append(MISSING)
                 continue
-            there = of.thresholds[number]
+            there = secondary.thresholds[number]
             one, two = map(wording.plain, (there.baseline_percent, there.repair_percent))
             rates.append(f"{one} → {two}, {wording.with_interval(there.difference)}")
     return rows

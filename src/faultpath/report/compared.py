@@ -1,6 +1,6 @@
 """Finished audits beside each other as data: effects, and what differs between the runs.
 
-Every audit keeps its own result. Only sizes of one fault are decided anew, as one family.
+Every audit keeps its own result. Only sizes of one fault are tested anew, as one family.
 """
 
 import re
@@ -33,22 +33,22 @@ class Compared:
     source: ReportInput
     """All that its pages are made from."""
     family: Mapping[str, tuple[Sign, float]] | None = None
-    """For a sweep over sizes: by condition, the side that is decided over all of them together, and
-    the adjusted p. `None` where every audit stands by itself."""
+    """For a sweep over sizes: by condition, the side that is significantly ahead over all of them
+    together, and the adjusted p. `None` where every audit stands by itself."""
 
     @property
     def record(self) -> AuditResult:
-        """Decisions of the audit."""
+        """Result of the audit."""
         return self.source.record
 
     @property
     def provenance(self) -> RunProvenance:
-        """Conditions under which it was made."""
+        """Code and machine that it was made with."""
         return self.source.provenance
 
     def effect(self, condition: str) -> Effect | None:
-        """Return its effect under a condition, as decided beside the others; `None` where it has
-        none."""
+        """Return its effect under a condition, as tested together with the others; `None` where it
+        has none."""
         effect = self.record.effect(condition)
         if effect is None or self.family is None or condition not in self.family:
             return effect
@@ -57,7 +57,7 @@ class Compared:
 
     @property
     def headline(self) -> str:
-        """Its own headline, qualified where not all that it decided stands over all sizes."""
+        """Its own headline, qualified where something in it is not significant over all sizes."""
         own, family = headline(self.record), self.family or {}
         fallen = any(
             e.sign and not family.get(e.condition, (e.sign, 0))[0] for e in self.record.effects
@@ -121,7 +121,7 @@ def _question(runs: Sequence[Compared]) -> dict[str, tuple[str, ...]]:
 
 
 def differing(runs: Sequence[Compared]) -> Facts:
-    """Return what differs between runs: what was asked first, then what ran, then on what."""
+    """Return what differs between runs: first in question and trials, then in code and machine."""
     environments = [
         {
             "Code, data and packages": code.system_fingerprint[:_DIGITS],
@@ -175,7 +175,7 @@ def same_correct_trials(runs: Sequence[Compared]) -> bool:
 
 
 def together(runs: Sequence[Compared]) -> tuple[Compared, ...]:
-    """Return runs of which sizes of one fault are decided as one family; others as they are.
+    """Return runs of which sizes of one fault are tested as one family; others as they are.
 
     Correct inputs that are the same trials at every size are one contrast.
     """

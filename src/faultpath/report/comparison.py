@@ -10,7 +10,7 @@ from rich.text import Text
 from faultpath.analyses.family import ALPHA
 from faultpath.analyses.model import where
 from faultpath.core.text import series, shortened
-from faultpath.report.audit_tables import decided_for
+from faultpath.report.audit_tables import version_ahead
 from faultpath.report.compared import (
     Compared,
     Facts,
@@ -36,7 +36,7 @@ _LABEL = 28
 
 def headline(runs: Sequence[Compared]) -> str:
     """Return what all sizes of a sweep answer under the primary condition; of other runs how many
-    there are, and where they are decided in opposite directions."""
+    there are, and where they are significant in opposite directions."""
     if sweep := swept(runs):
         primary = runs[0].record.facts.primary
         answer = _by_size(runs, primary, sweep[1])
@@ -56,10 +56,10 @@ def same(runs: Sequence[Compared]) -> str:
 
 
 def sentences(runs: Sequence[Compared]) -> tuple[str, ...]:
-    """Return what sizes decide together, where audits are decided in opposite directions, what
-    qualifies it, and the caveat.
+    """Return what is significant over all sizes, where audits are significant in opposite
+    directions, what qualifies it, and the caveat.
 
-    Audits of other variants ask something else, and are not held against each other.
+    Audits of other variants answer other questions, and are not held against each other.
     """
     conclusions = [
         f"{title}: significant {sides}."
@@ -85,7 +85,7 @@ def sentences(runs: Sequence[Compared]) -> tuple[str, ...]:
 
 
 def _over_sizes(runs: Sequence[Compared]) -> Iterator[str]:
-    """Yield what the number of sizes does to what was decided; nothing for other runs."""
+    """Yield what is significant over all sizes; nothing for runs that are no sweep."""
     sweep = swept(runs)
     if sweep is None:
         return
@@ -114,12 +114,14 @@ def _by_size(runs: Sequence[Compared], condition: str, sizes: Sequence[float]) -
 
 
 def _opposite(runs: Sequence[Compared], condition: str) -> Iterator[str]:
-    """Yield which runs are decided for which variant, for variants that win in some runs and lose
-    in others: `for a (baseline) in 1, for b (repair) in 2 and 3`."""
-    decided = [(run, effect) for run in runs if (effect := run.effect(condition)) and effect.sign]
-    for variants in dict.fromkeys(_variants(run) for run, _ in decided):
+    """Yield in which runs which variant is significantly ahead, for variants that win in some runs
+    and lose in others: `for a (baseline) in 1, for b (repair) in 2 and 3`."""
+    significant = [
+        (run, effect) for run in runs if (effect := run.effect(condition)) and effect.sign
+    ]
+    for variants in dict.fromkeys(_variants(run) for run, _ in significant):
         sides: dict[str, dict[str, list[str]]] = {}
-        for run, effect in decided:
+        for run, effect in significant:
             if _variants(run) != variants:
                 continue
             role = "repair" if effect.sign > 0 else "baseline"
@@ -142,8 +144,8 @@ def facts_table(runs: Sequence[Compared], facts: Facts) -> Table:
     for title, values in facts.items():
         lines.append(line(title))
         for value in dict.fromkeys(values):
-            of = [str(r.number) for r, own in zip(runs, values, strict=True) if own == value]
-            lines.append(line(value, series(of)))
+            numbers = [str(run.number) for run, v in zip(runs, values, strict=True) if v == value]
+            lines.append(line(value, series(numbers)))
     columns = ("Runs",)
     return Table(
         title="What differs", corner="Value", columns=columns, words=columns, lines=tuple(lines)
@@ -162,8 +164,8 @@ def effects(runs: Sequence[Compared]) -> Table:
                 continue
             rates = map(wording.plain, effect.rates)
             difference = Entry(text=wording.with_interval(effect), detected=effect.significant)
-            decided = decided_for(run.record, effect)
-            lines.append(line(label, " → ".join(rates), difference, decided))
+            ahead = version_ahead(run.record, effect)
+            lines.append(line(label, " → ".join(rates), difference, ahead))
     return Table(
         title=f"{'All sizes' if swept(runs) else 'Each run by itself'}; bold is significant",
         corner="Run",

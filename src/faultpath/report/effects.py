@@ -89,14 +89,14 @@ def shared_axis(effects: Iterable[Effect]) -> Axis:
 
 
 def _band(effect: Effect) -> float | None:
-    """Return the difference that is detected with 80 % power, where none is decided."""
+    """Return the difference that is detected with 80 % power, where none is significant."""
     return None if effect.significant else effect.least_pp
 
 
 def panel(title: str, rows: Sequence[Row], axis: Axis) -> str:
     """Return success of the repair minus success of the baseline, one row a label.
 
-    A filled dot is a decided effect; the light band behind an open one reaches as far as the
+    A filled dot is a significant effect; the light band behind an open one reaches as far as the
     difference that is detected with 80 % power.
     """
     values = [e if isinstance(e, str) else wording.with_interval(e) for _, e in rows]
@@ -147,7 +147,7 @@ def _sides(svg: Svg, plot: Axis, y: float) -> None:
 
 def _mark(svg: Svg, plot: Axis, effect: Effect, y: float) -> None:
     """Draw dot, whiskers, a ring for each seed, and the undetectable band where one is given, in
-    the colour of the variant that is decided for."""
+    the colour of the variant that is significantly ahead."""
     e, band, side = effect, _band(effect), _SIDES.get(effect.sign, "")
     if band:
         svg.rect(plot(-band), y - 11, plot(band) - plot(-band), 22, "band", 2)
@@ -218,6 +218,6 @@ def share_panels(
 
 
 def _crosses(share: ConditionBreakEven) -> bool:
-    """Return whether the estimate crosses zero, and at some share it is decided who is ahead."""
+    """Return whether the estimate crosses zero, and some variant is significantly ahead."""
     at = share.result.p_star
     return at is not None and 0.0 < at < 1.0 and bool(share.result.regions)

@@ -30,7 +30,6 @@ class Answer:
         return self.yes
 
     def __repr__(self) -> str:
-        """Return the answer and what it rests on."""
         return f"{'yes' if self.yes else 'no'}: {self.reason}"
 
 
@@ -60,11 +59,12 @@ def found(result: AuditResult, what: str) -> Answer:
             conclusive = main is not None and (main.sign != 0 or result.is_small(main))
             return Answer(not conclusive, f"{capital(where(primary))}: {in_short(result, main)}.")
         case "void":
-            void = sum(effect.void for effect in result.effects)
+            missing = sum(effect.void for effect in result.effects)
             lost = [name for name in result.titles if result.effect(name) is None]
-            sentences = [f"{counted(void, 'pair')} of trials {'is' if void == 1 else 'are'} void."]
+            verb = "is" if missing == 1 else "are"
+            sentences = [f"{counted(missing, 'pair')} of trials {verb} void."]
             sentences += [f"{phrases.no_pair(name)}." for name in lost]
-            return Answer(bool(void or lost), " ".join(sentences))
+            return Answer(bool(missing or lost), " ".join(sentences))
         case _:
             raise UserError(f"a result cannot be asked for that: {unknown('name', what, ASKS)}.")
 
@@ -82,8 +82,8 @@ def holds_when_shared(result: AuditResult) -> Answer:
     return Answer(effect is not None and effect.leads and effect.sign > 0, text)
 
 
-def junit(results: Sequence[AuditResult], conditions: Sequence[str]) -> str:
-    """Return JUnit's XML: a suite for each result, a case for its trials and each condition."""
+def junit(results: Sequence[AuditResult], asks: Sequence[str]) -> str:
+    """Return JUnit's XML: a suite for each result, a case for its trials and each of `asks`."""
     root = ElementTree.Element("testsuites", name="faultpath")
     for result in results:
         question, text = result.question, words(result)
@@ -94,9 +94,9 @@ def junit(results: Sequence[AuditResult], conditions: Sequence[str]) -> str:
             "trials-ran": f"{failed} trials failed or are missing." if failed else "",
             "result": text.headline if result.invalid else "",
         }
-        for condition in conditions:
-            answer = found(result, condition)
-            cases[f"no-{condition}"] = answer.reason if answer else ""
+        for ask in asks:
+            answer = found(result, ask)
+            cases[f"no-{ask}"] = answer.reason if answer else ""
         suite = ElementTree.SubElement(
             root,
             "testsuite",
@@ -114,16 +114,16 @@ def junit(results: Sequence[AuditResult], conditions: Sequence[str]) -> str:
     return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
 
 
-def summary(results: Sequence[AuditResult], conditions: Sequence[str]) -> str:
-    """Return what was decided as Markdown: a headline, what a build fails for, answers, tables."""
+def summary(results: Sequence[AuditResult], asks: Sequence[str]) -> str:
+    """Return results as Markdown: a headline, what a build fails for, answers, tables."""
     parts: list[str] = []
     for result in results:
         text = words(result)
         parts.append(f"### {markdown(text.headline)}")
-        wrong = {condition: found(result, condition) for condition in conditions}
+        gates = {ask: found(result, ask) for ask in asks}
         marks = [
             f"- **{'fails' if answer else 'passes'}** `{name}`: {markdown(answer.reason)}"
-            for name, answer in wrong.items()
+            for name, answer in gates.items()
         ]
         parts += ["\n".join(marks)] if marks else []
         parts += [f"**{label}.** {markdown(answer)}" for label, answer in answers(result).items()]

@@ -15,7 +15,7 @@ from faultpath.report.audit_tables import (
     ended,
     markdown_table,
     median_time,
-    secondary,
+    secondary_table,
 )
 from faultpath.report.effects import effect_rows, share_panels
 from faultpath.report.frame import STYLES, render, write_pages
@@ -41,7 +41,7 @@ def report_page(source: ReportInput) -> str:
     titles = result.titles
     significant = any(effect.sign for effect in result.effects)
     why = adding(source, pairs) if significant else None
-    tables = (ended(result), secondary(result))
+    tables = (ended(result), secondary_table(result))
     effects, axis = effect_rows(result)
     (frequency, no_frequency), (beta, no_beta) = (share_panels(result, b) for b in (False, True))
     same = constant(result, SHOWN)
@@ -68,8 +68,8 @@ def report_page(source: ReportInput) -> str:
         adding=why,
         adding_panels=list(map(Markup, adding_panels(why))) if why else (),
         missing=[pair for pair in pairs if pair.kind is PairKind.VOID],
-        n_missing=sum(of[PairKind.VOID] for of in ended_as.values()),
-        n_pairs=sum(sum(of.values()) for of in ended_as.values()),
+        n_missing=sum(kinds[PairKind.VOID] for kinds in ended_as.values()),
+        n_pairs=sum(sum(kinds.values()) for kinds in ended_as.values()),
         sampled=len({pair.scene for pair in pairs}) if sampled else 0,
         n_scenes=len(source.trials.scenes),
         effects=effects,
@@ -107,9 +107,9 @@ def report_page(source: ReportInput) -> str:
 
 def _fault(source: ReportInput) -> str:
     interface = source.system.interface
-    units = {of.name: interface.source(of.sources[0]).unit for of in interface.channels}
-    facts, asked = source.record.facts, source.record.question.fault
-    return wording.faults(facts, units) or str(asked or "As the system defines it.")
+    units = {c.name: interface.source(c.sources[0]).unit for c in interface.channels}
+    facts, fault = source.record.facts, source.record.question.fault
+    return wording.faults(facts, units) or str(fault or "As the system defines it.")
 
 
 def write_report(source: ReportInput, folder: Path) -> list[Path]:
@@ -124,7 +124,7 @@ def write_report(source: ReportInput, folder: Path) -> list[Path]:
 def _finding(result: AuditResult) -> list[tuple[Effect, str]]:
     """Return the two effects of a reversal, each with where it holds; without one, nothing.
 
-    Of an interaction only the change is decided: an effect by itself may be a point estimate.
+    Of an interaction only the change is significant: an effect alone may be a point estimate.
     """
     for moved in result.changes:
         if moved.turn == "reversal":

@@ -103,7 +103,7 @@ def _flips(result: MapResult) -> Table:
 
 
 def map_picture(result: MapResult) -> Svg:
-    """Return the map: who is decided to be ahead where, the estimate's zero, conditions and
+    """Return the map: who is significantly ahead where, the estimate's zero, conditions and
     points."""
     question, facts, side = result.question, result.facts, _SIDE
     title = f"Reversal map of {facts.system}: {question.repair} against {question.baseline}"
@@ -132,7 +132,7 @@ def map_picture(result: MapResult) -> Svg:
     for point in result.points:
         at = x(point.errors[0]), y(point.errors[1])
         svg.circle(at, 2.6, "dot" if point.sign else "dot open", tip=at_point(result, point))
-    # What a relative error is asked as is a share, and read as percent.
+    # A relative error is given as a share, and read as percent.
     reach, unit = (100 * facts.up_to, "%") if facts.relative else (facts.up_to, facts.unit)
     x, y = Axis(-reach, reach, x.start, x.end), Axis(-reach, reach, y.start, y.end)
     for tick in (-reach, -reach / 2, 0.0, reach / 2, reach):
@@ -147,7 +147,7 @@ def map_picture(result: MapResult) -> Svg:
 
 
 def _areas(svg: Svg, result: MapResult, x: Axis, y: Axis, hatch: str) -> None:
-    """Fill what is decided, a piece around each place of the lattice; the rest stays empty."""
+    """Fill what is significant, a piece around each place of the lattice."""
     sizes, surface = result.surface.sizes, result.surface
     edges = [sizes[0], *((a + b) / 2 for a, b in pairwise(sizes)), sizes[-1]]
     drawn: dict[tuple[int, str], list[str]] = {}
@@ -187,7 +187,7 @@ def _zero(result: MapResult, x: Axis, y: Axis) -> Iterator[str]:
 
 
 def _key(svg: Svg, result: MapResult, hatch: str) -> None:
-    """Draw what is compared, the scale of what is decided, and what is not."""
+    """Draw what is compared, the scale of the differences, and what is not significant."""
     question, cell = result.question, 46.0
     end = 6 * cell
     title = f"Success of {question.repair} minus that of {question.baseline}, pp"
@@ -213,7 +213,7 @@ def _entry(svg: Svg, left: float, y: float, words: str) -> float:
 
 
 def correlation_picture(result: MapResult) -> Svg:
-    """Return the expected difference over the correlation, in a variant's colour where decided."""
+    """Return the expected difference over the correlation, in the colour of the variant ahead."""
     joint, question, facts = result.joint, result.question, result.facts
     description = "; ".join(
         f"{e.correlation:g}: {wording.plain(e.value)} pp" for e in joint.requested

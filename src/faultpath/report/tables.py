@@ -33,7 +33,7 @@ class Entry(_Sparse):
     published: str = ""
     """The paper's, as printed; empty where it gives none."""
     detected: bool = False
-    """Whether it is a detected difference, printed in bold."""
+    """Whether it is a significant difference, printed in bold."""
     aside: str = ""
     """Qualification, such as `ceiling`: stands behind it in parentheses."""
     tone: Tone = ""

@@ -37,8 +37,8 @@ def decision(result: AuditResult, details: bool = False) -> RenderableType:
     `details` adds every sentence of the result, and what would change it.
     """
     question, text = result.question, words(result)
-    void = any(effect.void for effect in result.effects)
-    names = [name for name in _EFFECTS if void or name != "void"]
+    missing = any(effect.void for effect in result.effects)
+    names = [name for name in _EFFECTS if missing or name != "void"]
     success = by_quantity(result, ("baseline", "repair"))
     effects = by_condition(result, names, f"{question.repair} minus {question.baseline}")
     parts: list[RenderableType] = [Text(text.headline, style="bold")]

@@ -17,8 +17,7 @@ from faultpath.analyses.parting import Heard, parting
 from faultpath.report.inputs import ReportInput
 from faultpath.report.plots import Plot, first_plot, plots_of
 from faultpath.report.sentences import wording
-from faultpath.report.sentences.parting import DIFFERS, ending
-from faultpath.report.sentences.parting import parted as said
+from faultpath.report.sentences.parting import DIFFERS, ending, parted
 from faultpath.run.store.signals import DRAWN, IN_FORCE, Signal, Signals
 from faultpath.run.store.tables import Trace, TrialAddress, traces_of
 from faultpath.system.outcome import Outcome
@@ -211,10 +210,10 @@ class _Trials:
             Heard(at, outcome, signals[at])
             for at, outcome in zip(addresses, (pair.baseline, pair.repair), strict=True)
         )
-        parted = parting(self.source.system, one, other)
-        marks = [(first.step, DIFFERS[kind]) for kind, first in parted.first.items()]
-        marks += ending(parted, self.source.system.control_dt_s)
-        return {"said": said(result.facts, parted), "marks": marks}
+        differences = parting(self.source.system, one, other)
+        marks = [(first.step, DIFFERS[kind]) for kind, first in differences.first.items()]
+        marks += ending(differences, self.source.system.control_dt_s)
+        return {"said": parted(result.facts, differences), "marks": marks}
 
     def _put(self, metres: NDArray[np.float32]) -> int:
         """Put coordinates into `series` as whole centimetres, and return where they begin."""

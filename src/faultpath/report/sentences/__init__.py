@@ -18,7 +18,7 @@ class Words:
     sentences: tuple[str, ...]
     """All that it says, a sentence or two each."""
     findings: tuple[str, ...]
-    """What was found in its trials and a reader has to know."""
+    """Remarks on its trials that a reader has to know."""
     would_change: tuple[str, ...] | None = None
     """Changes that could change the result."""
     commands: tuple[str, ...] | None = None

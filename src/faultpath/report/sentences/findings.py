@@ -1,4 +1,4 @@
-"""What was found in the trials of a result, in words: a reader has to know it."""
+"""Findings in the trials of a result, in words: a reader has to know them."""
 
 from collections.abc import Iterator
 

@@ -94,12 +94,12 @@ def _distribution(result: MapResult) -> str:
 def _turned(result: MapResult) -> list[tuple[str, int, list[float]]]:
     """Return the module, the side ahead with it alone wrong, and the sizes at which sharing the
     error reverses that."""
-    of = {point.errors: point.sign for point in result.points}
+    signs = {point.errors: point.sign for point in result.points}
     turned: list[tuple[str, int, list[float]]] = []
     for place, module in enumerate(result.facts.modules):
-        alone = {sum(e): sign for e, sign in of.items() if not e[1 - place] and e[place]}
+        alone = {sum(e): sign for e, sign in signs.items() if not e[1 - place] and e[place]}
         for sign in (-1, 1):
-            sizes = sorted(s for s in alone if alone[s] == sign and of.get((s, s)) == -sign)
+            sizes = sorted(s for s in alone if alone[s] == sign and signs.get((s, s)) == -sign)
             if sizes:
                 turned.append((module, sign, sizes))
     return turned
@@ -153,5 +153,5 @@ def at_point(result: MapResult, point: MapPoint) -> str:
     sizes = [size_label(result.facts, error) for error in point.errors]
     named = zip(result.facts.modules, sizes, strict=True)
     pair = ", ".join(f"{module} {size}" for module, size in named)
-    decided = f"{result.winner(point.sign)} ahead" if point.sign else "not significant"
-    return f"{pair}: {signed(point.difference)} pp {interval(point)}, {decided}"
+    ahead = f"{result.winner(point.sign)} ahead" if point.sign else "not significant"
+    return f"{pair}: {signed(point.difference)} pp {interval(point)}, {ahead}"

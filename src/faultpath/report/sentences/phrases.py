@@ -48,7 +48,7 @@ _TESTS = {
     "t test": "whether the mean effect of trainings is 0, if they spread as a Gaussian does",
     "bets on the mean": "bets against a mean of 0, which hold at whatever scene one stops",
 }
-"""What a test computes, by the beginning of its name."""
+"""Meaning of a p-value, by the beginning of its test's name."""
 
 
 def tests(result: AuditResult) -> str:

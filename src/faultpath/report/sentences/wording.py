@@ -82,11 +82,11 @@ def p_equals(value: float) -> str:
 
 
 def break_even(result: BreakEven) -> str:
-    """Return the frequencies at which nobody is decided to be ahead, in percent.
+    """Return the frequencies at which nobody is significantly ahead, in percent.
 
     `59 [33, 80]` with the estimate in front where there is one; `[0, 12] and [80, 100]` for two
-    pieces; `none` where one variant is ahead throughout; `any` where at no frequency it is decided
-    who is. Ends are rounded outwards.
+    pieces; `none` where one variant is ahead throughout; `any` where none is at any frequency.
+    Ends are rounded outwards.
     """
     if result.kind == "empty":
         return "none"
