@@ -242,7 +242,7 @@ def correlation_picture(result: MapResult) -> Svg:
 
 def page(result: MapResult, provenance: RunProvenance) -> str:
     """Return the map as one page that opens without a network."""
-    *turns, conditions = tables(result)
+    *flips, conditions = ({"table": t, "markup": Markup(html(t))} for t in tables(result))
     return render(
         "map.html.j2",
         result=result,
@@ -253,11 +253,9 @@ def page(result: MapResult, provenance: RunProvenance) -> str:
         up_to=size_label(result.facts, result.facts.up_to),
         map=Markup(map_picture(result).render()),
         curve=Markup(correlation_picture(result).render()),
-        flips=Markup(html(turns[0])) if turns else "",
-        flips_notes=turns[0].notes if turns else (),
-        conditions=Markup(html(conditions)),
+        flips=flips[0] if flips else None,
+        conditions=conditions,
         estimand=scenes_like_these(result.facts),
-        conditions_notes=conditions.notes,
     )
 
 

@@ -1,6 +1,6 @@
 """Sentences on a map: only what is significant, each time with the sizes at which it is."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 from faultpath.analyses.map.lattice import SHARED
 from faultpath.analyses.map.model import Flip, MapFacts, MapPoint, MapResult
@@ -54,7 +54,12 @@ def sentences(result: MapResult) -> tuple[str, ...]:
         "that were run.",
         f"Of {run} pairs of errors run, {result.winner(-1)} is significantly ahead at {ahead[-1]} "
         f"and {result.winner(1)} at {ahead[1]}; at {run - ahead[-1] - ahead[1]} neither.",
-        *_reversals(result),
+        *(
+            f"Sharing the error reverses the ranking at {_sizes(result.facts, sizes)}: with the "
+            f"{module} alone wrong {result.winner(sign)} is ahead, with both wrong alike "
+            f"{result.winner(-sign)}."
+            for module, sign, sizes in _turned(result)
+        ),
         *(_flipped(result, flip) for flip in result.flips),
         _distribution(result),
         _expected(result),
@@ -107,15 +112,6 @@ def _turned(result: MapResult) -> list[tuple[str, int, list[float]]]:
 
 def _sizes(facts: MapFacts, values: Sequence[float]) -> str:
     return series([size_label(facts, size) for size in values])
-
-
-def _reversals(result: MapResult) -> Iterator[str]:
-    for module, sign, values in _turned(result):
-        yield (
-            f"Sharing the error reverses the ranking at {_sizes(result.facts, values)}: with the "
-            f"{module} alone wrong {result.winner(sign)} is ahead, with both wrong alike "
-            f"{result.winner(-sign)}."
-        )
 
 
 def _flipped(result: MapResult, flip: Flip) -> str:

@@ -70,9 +70,8 @@ def sentences(result: ScanResult) -> tuple[str, ...]:
     """Return what the scan found, sentence by sentence, then what it left out."""
     if result.invalid:
         return ()
-    results = (*_results(result), *_idle(result), *_halved(result), _counts(result))
-    left_out = (*_few(result), *_unsized(result), *_hard(result), *_failed(result))
-    return (*results, *left_out, _limits(result))
+    results = *_results(result), *_idle(result), *_halved(result), _counts(result)
+    return *results, *_left_out(result)
 
 
 def _results(result: ScanResult) -> Iterator[str]:
@@ -161,23 +160,6 @@ def _idle(result: ScanResult) -> Iterator[str]:
             yield f"{before}No reading was ever changed by {series(names)}: nothing was tested."
 
 
-def _unsized(result: ScanResult) -> Iterator[str]:
-    """Say which sources were not scanned."""
-    names = [s.name for s in result.ranking.sources if not s.fault and not s.at]
-    if names:
-        yield (f"Without a declared size, and so not scanned: {series(names)}; --fault gives one.")
-
-
-def _hard(result: ScanResult) -> Iterator[str]:
-    """Say where so few trials succeed without an error that none can cost much."""
-    for version in result.versions:
-        if version.first[0].none < FLOOR_PERCENT:
-            yield (
-                f"In {version.variant} only {rate(version.first[0].none)} succeed without an "
-                "error, so that none can cost much: choose easier scenes."
-            )
-
-
 def _counts(result: ScanResult) -> str:
     chosen, total = len(result.chosen), len(result.errors)
     first, second = result.scenes
@@ -196,8 +178,8 @@ def _counts(result: ScanResult) -> str:
     )
 
 
-def _few(result: ScanResult) -> Iterator[str]:
-    """Say where pairs ran in so few scenes that little can be shown of them."""
+def _left_out(result: ScanResult) -> Iterator[str]:
+    """Say what was not scanned or may have been missed, and how far the list holds."""
     scenes = result.scenes[1]
     if result.chosen and scenes < FEW_SCENES:
         yield (
@@ -205,20 +187,22 @@ def _few(result: ScanResult) -> Iterator[str]:
             "pair that is not listed may cancel as well. A larger library leaves more scenes for "
             "pairs."
         )
-
-
-def _failed(result: ScanResult) -> Iterator[str]:
+    if names := [s.name for s in result.ranking.sources if not s.fault and not s.at]:
+        yield f"Without a declared size, and so not scanned: {series(names)}; --fault gives one."
+    for version in result.versions:
+        if version.first[0].none < FLOOR_PERCENT:
+            yield (
+                f"In {version.variant} only {rate(version.first[0].none)} succeed without an "
+                "error, so that none can cost much: choose easier scenes."
+            )
     if result.failed:
         yield (
             f"{counted(result.failed, 'trial')} failed and left their scenes out of what they are "
             "part of: what is listed holds if failing has nothing to do with how they would have "
             "ended."
         )
-
-
-def _limits(result: ScanResult) -> str:
     apart = " Versions are tested separately." if len(result.versions) > 1 else ""
-    return (
+    yield (
         f"What is listed holds for {scenes_like_these(result.facts)}, at these sizes. Nothing is "
         f"claimed of other pairs, nor that any errors add up.{apart}"
     )
