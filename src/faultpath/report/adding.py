@@ -107,10 +107,10 @@ def _of(source: ReportInput, scene: str, pairs: Mapping[str, Pair]) -> Adding | 
             conditions[name] = lines
     if not conditions:
         return None
-    every = np.concatenate([line.values.ravel() for of in conditions.values() for line in of])
-    every = every[np.isfinite(every)]
-    low, high = (float(end) for end in np.quantile(every, (0.03, 0.97)))
-    whole = float(every.min()), float(every.max())
+    values = np.concatenate([v.values.ravel() for pair in conditions.values() for v in pair])
+    values = values[np.isfinite(values)]
+    low, high = (float(end) for end in np.quantile(values, (0.03, 0.97)))
+    whole = float(values.min()), float(values.max())
     cut = whole[1] - whole[0] > _SQUEEZED * max(high - low, 1e-9)
     last, variants = list(conditions.items())[-1]
     terms = variants[-1].terms

@@ -66,13 +66,12 @@ def sentences(runs: Sequence[Compared]) -> tuple[str, ...]:
         for condition, title in titles(runs).items()
         for sides in _opposite(runs, condition)
     ]
-    if not conclusions and len({_variants(run) for run in runs}) == len(runs):
-        conclusions = [
-            "No two of these audits compare the same versions, so none can contradict another."
-        ]
-    conclusions = conclusions or [
-        "No two audits of the same versions are significant in opposite directions."
-    ]
+    if not conclusions:
+        conclusions = (
+            ["No two of these audits compare the same versions, so none can contradict another."]
+            if len({_variants(run) for run in runs}) == len(runs)
+            else ["No two audits of the same versions are significant in opposite directions."]
+        )
     if len({run.record.facts.system for run in runs}) > 1:
         conclusions += [
             "The runs are of different systems: the same name need not mean the same thing."
@@ -101,16 +100,16 @@ def _over_sizes(runs: Sequence[Compared]) -> Iterator[str]:
 
 def _by_size(runs: Sequence[Compared], condition: str, sizes: Sequence[float]) -> str:
     """Return who is ahead at which sizes: `gru ahead at 0.1; nothing significant at 0.05`."""
-    at: dict[str, list[str]] = {}
+    by_answer: dict[str, list[str]] = {}
     for run, size in sorted(zip(runs, sizes, strict=True), key=lambda pair: pair[1]):
         effect, words = run.effect(condition), "nothing significant"
         if effect and effect.sign:
             words = f"{run.record.winner(effect.sign)} ahead"
-        at.setdefault(words, []).append(tick_label(size))
-    if len(at) == 1:
-        (words,) = at
+        by_answer.setdefault(words, []).append(tick_label(size))
+    if len(by_answer) == 1:
+        (words,) = by_answer
         return f"{words} at {'every' if words.endswith('ahead') else 'any'} size"
-    return "; ".join(f"{words} at {series(of)}" for words, of in at.items())
+    return "; ".join(f"{words} at {series(ticks)}" for words, ticks in by_answer.items())
 
 
 def _opposite(runs: Sequence[Compared], condition: str) -> Iterator[str]:
@@ -130,7 +129,7 @@ def _opposite(runs: Sequence[Compared], condition: str) -> Iterator[str]:
             text = f"{run.number} (at the {aside})" if aside else f"{run.number}"
             sides.setdefault(winner, {}).setdefault(f"{winner} ({role})", []).append(text)
         if len(sides) > 1:
-            clauses = [clause for of in sides.values() for clause in of.items()]
+            clauses = [clause for by_role in sides.values() for clause in by_role.items()]
             yield ", ".join(f"for {side} in {series(numbers)}" for side, numbers in clauses)
 
 

@@ -47,13 +47,13 @@ def tables(result: MapResult) -> tuple[Table, ...]:
 
 def _conditions(result: MapResult) -> Table:
     question, facts = result.question, result.facts
-    of = {point.errors: point for point in result.points}
+    points = {point.errors: point for point in result.points}
     lines: list[Line] = []
-    for size in sorted({x or y for x, y in of if x == y or not x or not y}):
+    for size in sorted({x or y for x, y in points if x == y or not x or not y}):
         entries: list[Entry] = []
         for errors in ((size, 0.0), (0.0, size), (size, size)):
             entry = Entry(text="not run")
-            if point := of.get(errors):
+            if point := points.get(errors):
                 text = f"{wording.signed(point.difference)} {wording.interval(point)}"
                 entry = Entry(text=text, detected=point.sign != 0)
             entries.append(entry)
@@ -76,17 +76,17 @@ def _flips(result: MapResult) -> Table:
     facts = result.facts
     lines: list[Line] = []
     for flip in result.flips:
-        kept = turned = "neither"
+        before = beyond = "neither"
         if flip.start and flip.until is not None:
-            kept = f"{result.winner(flip.start)}, {size_label(facts, flip.until)}"
+            before = f"{result.winner(flip.start)}, {size_label(facts, flip.until)}"
         if flip.turned and flip.first is not None and flip.last is not None:
-            turned = f"{result.winner(flip.turned)}, {size_label(facts, flip.first)}"
+            beyond = f"{result.winner(flip.turned)}, {size_label(facts, flip.first)}"
             if abs(flip.last) < facts.up_to:
-                turned += f" to {size_label(facts, flip.last)}"
+                beyond += f" to {size_label(facts, flip.last)}"
         condition = SHARED if flip.condition == SHARED else f"{flip.condition} alone"
         direction = "above 0" if flip.direction > 0 else "below 0"
         estimate = "no turn" if flip.estimate is None else size_label(facts, flip.estimate)
-        lines.append(line(condition, direction, kept, estimate, turned))
+        lines.append(line(condition, direction, before, estimate, beyond))
     return Table(
         name="flips",
         title="Smallest error that reverses the ranking",

@@ -99,12 +99,12 @@ def captions(pairs: Sequence[Pair], sampled: bool = False) -> dict[tuple[str, in
     whether it is typical of them."""
     groups = alike(pairs)
     scenes, seeds = ({at[part] for at in groups} for part in (0, 1))
-    of = f"{len(scenes)} {'sampled scenes' if sampled else 'scenes'}"
+    total = f"{len(scenes)} {'sampled scenes' if sampled else 'scenes'}"
     if len(seeds) > 1:
-        of = f"{len(groups)} ({of}, {len(seeds)} seeds)"
+        total = f"{len(groups)} ({total}, {len(seeds)} seeds)"
     typical = " It is a typical one: its trials end apart at the median time of these."
     return {
-        at: f"{count} of {of} {'goes' if count == 1 else 'go'} like this one: the same versions "
+        at: f"{count} of {total} {'goes' if count == 1 else 'go'} like this one: the same versions "
         f"succeed under each condition.{typical if is_typical else ''}"
         for at, (count, is_typical) in groups.items()
     }

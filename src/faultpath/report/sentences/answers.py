@@ -30,8 +30,8 @@ _PAIRED = {
 def sentences(result: AuditResult) -> tuple[str, ...]:
     """Return all that a result says, a sentence or two each: changes first, then the answers."""
     changes = [phrases.change(result, change) for change in result.changes if not result.invalid]
-    said = {*_unchanged(result)}  # change by change, above
-    return (*changes, *(s for s in sum(_answers(result).values(), list[str]()) if s not in said))
+    above = {*_unchanged(result)}  # change by change
+    return (*changes, *(s for s in sum(_answers(result).values(), list[str]()) if s not in above))
 
 
 def answers(result: AuditResult) -> dict[str, str]:
@@ -81,12 +81,12 @@ def _follows(result: AuditResult) -> Iterator[str]:
             yield f"Neither is to be preferred: each difference is below {margin(result)}."
         else:
             yield _unknown(result)
-    turned = reversed_at(result)
-    if turned:
-        one, other = result.winner(turned[0].sign), result.winner(-turned[0].sign)
+    reversals = reversed_at(result)
+    if reversals:
+        one, other = result.winner(reversals[0].sign), result.winner(-reversals[0].sign)
         yield (
-            f"Ask which fault your system will meet: {places(turned)}, {one} succeeds more often; "
-            f"where the modules share it, {other} succeeds more often."
+            f"Ask which fault your system will meet: {places(reversals)}, {one} succeeds more "
+            f"often; where the modules share it, {other} succeeds more often."
         )
         leading = [effect for effect in leading if effect.condition == CORRECT]
     for sign in (1, -1):
@@ -102,7 +102,7 @@ def _follows(result: AuditResult) -> Iterator[str]:
             f"A fault at the {' or the '.join(modules)} alone does not stand for the shared one: "
             "the difference between the two versions changes."
         )
-    if disagree and not turned:
+    if disagree and not reversals:
         yield "Which is better depends on which fault occurs, and how often."
     for share in result.break_even if disagree else ():
         if share.condition == result.facts.primary and share.ahead:

@@ -38,11 +38,11 @@ def headline(result: AuditResult) -> str:
         return f"{capital(where(primary))}, the fault never acted: nothing was tested there."
     ends = {rate for effect in tested for rate in effect.rates}
     if ends <= {0.0, 100.0} and not any(any(map(any, effect.won)) for effect in tested):
-        every = [word for end, word in ((100.0, "succeed"), (0.0, "fail")) if end in ends]
-        return f"No difference could show: in every scene both versions {' or '.join(every)}."
-    turned = reversed_at(result)
-    if turned:
-        text = _reversal(result, main, turned)
+        endings = [word for end, word in ((100.0, "succeed"), (0.0, "fail")) if end in ends]
+        return f"No difference could show: in every scene both versions {' or '.join(endings)}."
+    reversals = reversed_at(result)
+    if reversals:
+        text = _reversal(result, main, reversals)
     else:
         text = _ranking(result, main, [effect for effect in tested if effect is not main])
     # How few scenes differ qualifies who is ahead, and nothing else that a headline says.
@@ -68,28 +68,28 @@ def _few_scenes(result: AuditResult) -> str:
 
 def reversed_at(result: AuditResult) -> list[Effect]:
     """Return the isolated effects that sharing reverses, where advice may rest on both."""
-    of = {effect.condition: effect for effect in result.effects if effect.leads}
+    leading = {effect.condition: effect for effect in result.effects if effect.leads}
     return [
-        of[change.isolated]
+        leading[change.isolated]
         for change in result.changes
-        if change.turn == "reversal" and change.isolated in of and SHARED in of
+        if change.turn == "reversal" and change.isolated in leading and SHARED in leading
     ]
 
 
-def _reversal(result: AuditResult, main: Effect, turned: Sequence[Effect]) -> str:
+def _reversal(result: AuditResult, main: Effect, reversals: Sequence[Effect]) -> str:
     """Advise against the isolated fault, unless correct inputs rank the versions as it does: then
     a test with it shows no more than one without."""
-    one, other = result.winner(turned[0].sign), result.winner(-turned[0].sign)
-    modules = " or ".join(effect.condition for effect in turned)
-    alone = f"the {modules} alone" if len(turned) < 3 else "one module alone"
+    one, other = result.winner(reversals[0].sign), result.winner(-reversals[0].sign)
+    modules = " or ".join(effect.condition for effect in reversals)
+    alone = f"the {modules} alone" if len(reversals) < 3 else "one module alone"
     correct = [
         effect.sign for effect in result.effects if effect.condition == CORRECT and effect.leads
     ]
-    if turned[0].sign in correct:
-        at = f" and with it at {alone}" if main.condition == SHARED or main in turned else ""
+    if reversals[0].sign in correct:
+        at = f" and with it at {alone}" if main.condition == SHARED or main in reversals else ""
         return f"{one} is ahead without the fault{at}, {other} with it shared."
     advice = f"Do not choose by the fault at {alone}:"
-    if main.condition == CORRECT and main.leads and len(turned) == 1:
+    if main.condition == CORRECT and main.leads and len(reversals) == 1:
         ahead = f"{result.winner(main.sign)} is ahead {where(CORRECT)}."
         return f"{ahead} {advice} sharing reverses the ranking."
     return f"{advice} {one} is ahead there, {other} with it shared."

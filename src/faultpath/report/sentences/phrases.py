@@ -57,12 +57,12 @@ def tests(result: AuditResult) -> str:
     for effect in result.effects:
         title = result.titles[effect.condition]
         by_name.setdefault(effect.test, []).append(f"{title} {p_value(effect.p_value)}")
-    said: list[str] = []
+    sentences: list[str] = []
     for name, values in by_name.items():
         means = next((words for test, words in _TESTS.items() if name.startswith(test)), "")
         what = f"{capital(name)}: {means}. " if means else f"{capital(name)}. "
-        said.append(f"{what}p, before correction: {', '.join(values)}.")
-    return " ".join(said)
+        sentences.append(f"{what}p, before correction: {', '.join(values)}.")
+    return " ".join(sentences)
 
 
 def margin(result: AuditResult) -> str:
@@ -220,8 +220,8 @@ def in_trials_that_ran(result: AuditResult) -> Iterator[str]:
             "trial would have ended"
         )
         if effect.missing.reruns is not None:
-            of = zip(effect.missing.reruns, (question.repair, question.baseline), strict=True)
-            needed = series([f"{count} of {name}" for count, name in of if count])
+            counts = zip(effect.missing.reruns, (question.repair, question.baseline), strict=True)
+            needed = series([f"{count} of {name}" for count, name in counts if count])
             how = "the same command tries them again"
             if result.facts.judged:
                 how = "add their outcomes to the results"

@@ -115,10 +115,10 @@ def faults(facts: ComparisonFacts, units: Mapping[str, str] | None = None) -> st
     where `units` of channels are known; empty in results without it."""
     words: list[str] = []
     for fault in facts.faults:
-        of = (units or {}).get(fault.channel, "1")
+        unit_name = (units or {}).get(fault.channel, "1")
         how = fault.intervention
         added = how.kind in _ADDED and not getattr(how, "relative", False)
-        in_unit = f" ({unit(of)})" if added and of not in ("", "1") else ""
+        in_unit = f" ({unit(unit_name)})" if added and unit_name not in ("", "1") else ""
         words.append(fault.aimed_at("*").describe() + in_unit)
     # `describe` says at whom a fault aims, and an audit aims it at each in turn.
     return "; ".join(re.sub(" at every [a-z]+", "", text) for text in words)
