@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from markupsafe import Markup
 from numpy.typing import NDArray
 
 from faultpath.analyses.examples import choose
@@ -136,11 +137,11 @@ def _of(source: ReportInput, scene: str, pairs: Mapping[str, Pair]) -> Adding | 
     )
 
 
-def adding_panels(shown: Adding) -> list[str]:
+def adding_panels(shown: Adding) -> list[Markup]:
     """Return a picture of each condition, the baseline above the repair, all on the same axes."""
     upward = covering(shown.span, least=1e-9)
     x = Axis(0.0, shown.longest_s, _LEFT, _WIDTH - _RIGHT)
-    panels: list[str] = []
+    panels: list[Markup] = []
     for title, variants in shown.conditions:
         endings = "; ".join(
             f"{variant.role} {variant.name}: {variant.ended}" for variant in variants

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Sequence
 
-from markupsafe import Markup
 from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.text import Text
@@ -208,9 +207,9 @@ def page(runs: Sequence[Compared]) -> str:
         headline=headline(runs),
         sentences=sentences(runs),
         runs=[(run, scenes_run(run.record), of_audit(run.record)) for run in runs],
-        panels=[Markup(panel(title, rows, axis)) for title, rows in panels.items()],
-        effects=Markup(html(effects(runs))),
-        facts=Markup(html(facts_table(runs, facts))) if facts else "",
+        panels=[panel(title, rows, axis) for title, rows in panels.items()],
+        effects=html(effects(runs)),
+        facts=html(facts_table(runs, facts)) if facts else "",
         same=same(runs),
         sizes=swept(runs),
     )

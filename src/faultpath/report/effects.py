@@ -3,6 +3,8 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from markupsafe import Markup
+
 from faultpath.analyses.effects import Effect
 from faultpath.analyses.model import AuditResult, ConditionBreakEven
 from faultpath.report.sentences import wording
@@ -43,12 +45,12 @@ class EffectRow:
     side: str
     """The variant that is significantly ahead, or `open`."""
     words: str
-    picture: str
+    picture: Markup
     boxed: bool
     """Whether a grey box shows which differences could be missed."""
 
 
-def effect_rows(result: AuditResult) -> tuple[list[EffectRow], str]:
+def effect_rows(result: AuditResult) -> tuple[list[EffectRow], Markup]:
     """Return a row for every condition, all pictures on one axis, and the axis below them, with
     whose side is which."""
     plot = shared_axis(result.effects).at(6, _WIDE - 6)
@@ -93,7 +95,7 @@ def _band(effect: Effect) -> float | None:
     return None if effect.significant else effect.least_pp
 
 
-def panel(title: str, rows: Sequence[Row], axis: Axis) -> str:
+def panel(title: str, rows: Sequence[Row], axis: Axis) -> Markup:
     """Return success of the repair minus success of the baseline, one row a label.
 
     A filled dot is a significant effect; the light band behind an open one reaches as far as the
@@ -167,7 +169,7 @@ def _mark(svg: Svg, plot: Axis, effect: Effect, y: float) -> None:
 
 def share_panels(
     result: AuditResult, beta: bool = False
-) -> tuple[list[tuple[str, str]], list[str]]:
+) -> tuple[list[tuple[Markup, str]], list[str]]:
     """Return the expected success difference over the frequency of the fault, or over the beta
     factor, a picture for each condition with a break-even, with what is significant there; and
     sentences on the other conditions.
@@ -181,7 +183,7 @@ def share_panels(
     shares = [s for s in (result.break_even_beta if beta else result.break_even) if s.curve]
     ends = [end for share in filter(_crosses, shares) for _, *ends in share.curve for end in ends]
     vertical = covering(ends, 0.06, 10)
-    panels: list[tuple[str, str]] = []
+    panels: list[tuple[Markup, str]] = []
     others: list[str] = []
     for share in shares:
         title, even = result.titles[share.condition], share.result

@@ -2,8 +2,6 @@
 
 from pathlib import Path
 
-from markupsafe import Markup
-
 from faultpath.analyses.effects import Effect
 from faultpath.analyses.model import SHARED, AuditResult, where
 from faultpath.analyses.pairs import PairKind, counts, is_sample, read_pairs
@@ -43,6 +41,14 @@ def report_page(source: ReportInput) -> str:
     why = adding(source, pairs) if significant else None
     tables = (ended(result), secondary_table(result))
     effects, axis = effect_rows(result)
+    listed = [] if sampled else pairs
+    grids = [
+        (
+            name,
+            pair_grid(title, [p for p in listed if p.condition == name], kinds, facts.ends, shown),
+        )
+        for (name, title), kinds in zip(titles.items(), ended_as.values(), strict=True)
+    ]
     (frequency, no_frequency), (beta, no_beta) = (share_panels(result, b) for b in (False, True))
     same = constant(result, SHOWN)
     shown_columns = [name for name in SHOWN if name not in same]
@@ -66,7 +72,7 @@ def report_page(source: ReportInput) -> str:
         finding=_finding(result),
         changes=[(moved.turn, phrases.change(result, moved)) for moved in result.changes],
         adding=why,
-        adding_panels=list(map(Markup, adding_panels(why))) if why else (),
+        adding_panels=adding_panels(why) if why else (),
         missing=[pair for pair in pairs if pair.kind is PairKind.VOID],
         n_missing=sum(kinds[PairKind.VOID] for kinds in ended_as.values()),
         n_pairs=sum(sum(kinds.values()) for kinds in ended_as.values()),
@@ -74,33 +80,19 @@ def report_page(source: ReportInput) -> str:
         n_scenes=len(source.trials.scenes),
         effects=effects,
         axis=axis,
-        numbers=Markup(html(by_condition(result, shown_columns, "Effects; bold is significant"))),
+        numbers=html(by_condition(result, shown_columns, "Effects; bold is significant")),
         same=" ".join(filter(None, (*same.values(), median_time(result)))),
         tests=phrases.tests(result),
         fault=_fault(source),
         variants=list(zip(("baseline", "repair"), source.system.variants, strict=True)),
-        forks=[Markup(fork_panel(fork)) for fork in forks(source)],
-        frequency=[(Markup(picture), text) for picture, text in frequency],
+        forks=list(map(fork_panel, forks(source))),
+        frequency=frequency,
         no_frequency=no_frequency,
-        beta=[(Markup(picture), text) for picture, text in beta],
+        beta=beta,
         no_beta=no_beta,
-        grids=[
-            (
-                name,
-                Markup(
-                    pair_grid(
-                        title,
-                        [] if sampled else [p for p in pairs if p.condition == name],
-                        ended_as[name],
-                        facts.ends,
-                        shown,
-                    )
-                ),
-            )
-            for name, title in titles.items()
-        ],
-        pair_key=[(Markup(sign), words) for sign, words in pair_key(pairs)],
-        outcomes=[(table.title, Markup(html(table))) for table in filter(None, tables)],
+        grids=grids,
+        pair_key=pair_key(pairs),
+        outcomes=[(table.title, html(table)) for table in filter(None, tables)],
         viewer=viewer,
     )
 

@@ -4,8 +4,6 @@ from collections.abc import Iterator
 from itertools import pairwise, product
 from pathlib import Path
 
-from markupsafe import Markup
-
 from faultpath.analyses.map.lattice import SHARED
 from faultpath.analyses.map.model import MapResult
 from faultpath.core.text import counted
@@ -242,7 +240,7 @@ def correlation_picture(result: MapResult) -> Svg:
 
 def page(result: MapResult, provenance: RunProvenance) -> str:
     """Return the map as one page that opens without a network."""
-    *flips, conditions = ({"table": t, "markup": Markup(html(t))} for t in tables(result))
+    *flips, conditions = ({"table": t, "markup": html(t)} for t in tables(result))
     return render(
         "map.html.j2",
         result=result,
@@ -251,8 +249,8 @@ def page(result: MapResult, provenance: RunProvenance) -> str:
         provenance=provenance,
         words=words(result),
         up_to=size_label(result.facts, result.facts.up_to),
-        map=Markup(map_picture(result).render()),
-        curve=Markup(correlation_picture(result).render()),
+        map=map_picture(result).render(),
+        curve=correlation_picture(result).render(),
         flips=flips[0] if flips else None,
         conditions=conditions,
         estimand=scenes_like_these(result.facts),

@@ -3,8 +3,6 @@
 from math import inf
 from pathlib import Path
 
-from markupsafe import Markup
-
 from faultpath.analyses.scan.model import ScanError, ScannedVersion, ScanResult, SecondStage
 from faultpath.analyses.scan.sources import Candidate, Ranking
 from faultpath.core.text import counted
@@ -196,12 +194,12 @@ def page(result: ScanResult, provenance: RunProvenance) -> str:
     versions = [
         {
             "name": version.variant,
-            "triangle": Markup(triangle(result, version).render()) if version.singles else "",
+            "triangle": triangle(result, version).render() if version.singles else "",
             "strips": [
                 {
                     "letters": " and ".join(names[place] for place in pair.errors),
                     "words": of_pair(result, pair),
-                    "picture": Markup(strip(result, version, pair).render()),
+                    "picture": strip(result, version, pair).render(),
                 }
                 for pair in version.listed
             ],
@@ -217,5 +215,5 @@ def page(result: ScanResult, provenance: RunProvenance) -> str:
         provenance=provenance,
         n_trials=result.trials,
         versions=versions,
-        tables=[(table, Markup(html(table, caption=False))) for table in tables(result, inf)],
+        tables=[(table, html(table, caption=False)) for table in tables(result, inf)],
     )

@@ -8,6 +8,8 @@ from functools import cache
 from hashlib import blake2b
 from importlib import resources
 
+from markupsafe import Markup
+
 from faultpath.report.escapes import html as escape
 
 Point = tuple[float, float]
@@ -151,8 +153,9 @@ class Svg:
         )
         return f"url(#{key})"
 
-    def render(self, standalone: bool = False) -> str:
-        """Return the markup; `standalone` carries its own style and opens as a file."""
+    def render(self, standalone: bool = False) -> Markup:
+        """Return the markup, which is safe on a page; `standalone` carries its own style and opens
+        as a file."""
         style, margin = "", 0
         if standalone:
             margin = _FILE_MARGIN
@@ -170,7 +173,7 @@ class Svg:
             f'width="{width}" height="{height}">'
             f'<title id="{self.uid}-t">{escape(self._title)}</title>{described}{style}'
         )
-        return head + "".join(self._parts) + "</svg>"
+        return Markup(head + "".join(self._parts) + "</svg>")
 
 
 def _tip(text: str) -> str:

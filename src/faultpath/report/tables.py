@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator
 from typing import Literal
 
+from markupsafe import Markup
 from pydantic import BaseModel, ConfigDict, SerializerFunctionWrapHandler, model_serializer
 
 from faultpath.report.escapes import html as escape
@@ -97,7 +98,7 @@ def line(label: str, *entries: str | Entry, name: bool = False, aside: str = "")
     return Line(label=label, entries=cells, name=name, aside=aside)
 
 
-def html(table: Table, style: str = "numbers", *, caption: bool = True) -> str:
+def html(table: Table, style: str = "numbers", *, caption: bool = True) -> Markup:
     """Return the `table` element, without its notes, with a body for each inner heading."""
     span = len(table.columns) + 1
     corner = f'<th scope="col">{escape(table.corner)}</th>' if table.corner else "<td></td>"
@@ -121,7 +122,7 @@ def html(table: Table, style: str = "numbers", *, caption: bool = True) -> str:
             label = f"{escape(line.label)}{_aside(line.aside)}"
             parts.append(f'<tr><th scope="row">{label}</th>{entries}</tr>')
         parts.append("</tbody>")
-    return "\n".join([*parts, "</table>"])
+    return Markup("\n".join([*parts, "</table>"]))
 
 
 def _html_entry(entry: Entry, of_column: str = "") -> str:

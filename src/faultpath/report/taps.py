@@ -5,6 +5,8 @@ The delivery log says which taps had the fault in force, and the variants say wh
 
 from dataclasses import dataclass
 
+from markupsafe import Markup
+
 from faultpath.analyses.model import CORRECT
 from faultpath.core.text import series
 from faultpath.interface import module_of
@@ -105,7 +107,7 @@ def forks(source: ReportInput) -> tuple[Fork, ...]:
     return tuple(branches)
 
 
-def fork_panel(fork: Fork) -> str:
+def fork_panel(fork: Fork) -> Markup:
     """Return the picture of a condition."""
     description = " ".join(
         f"{role.capitalize()} {name}: "

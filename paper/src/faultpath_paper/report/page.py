@@ -18,7 +18,7 @@ LOOKS = 4
 _KEY_ROW, _SAMPLE = 20.0, 28.0
 
 
-def sweep_plot(sweep: Sweep) -> str:
+def sweep_plot(sweep: Sweep) -> Markup:
     """Return the lines of a sweep with their bands."""
     width, height = 560.0, 250.0
     top = _KEY_ROW + 34
@@ -108,12 +108,12 @@ def reproduction_page(
             "answer": central[0],
             "question": QUESTION,
             "detail": central[1],
-            "table": Markup(html(central[2])),
+            "table": html(central[2]),
             "notes": (*central[2].legend(), *central[2].notes),
         },
-        tables=[(table, Markup(html(table, "beside", caption=False))) for table in record.tables],
+        tables=[(table, html(table, "beside", caption=False)) for table in record.tables],
         footnotes={note: number for number, note in enumerate(shared, 1)},
-        sweeps=[{"sweep": sweep, "picture": Markup(sweep_plot(sweep))} for sweep in record.figures],
+        sweeps=[{"sweep": sweep, "picture": sweep_plot(sweep)} for sweep in record.figures],
         provenance=provenance,
         w=wording,
         words=words,
