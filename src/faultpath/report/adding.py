@@ -70,11 +70,8 @@ class Adding:
 
 
 def adding(source: ReportInput, pairs: Sequence[Pair]) -> Adding | None:
-    """Return the first scene of the viewer of which both errors are known under a condition of the
-    fault.
-
-    `None` where the system names no errors, or nothing was recorded.
-    """
+    """Return the first scene of the viewer with both errors known under a condition of the fault;
+    `None` where the system names no errors, or nothing was recorded."""
     groups, recorded = by_scene(pairs), {(at.scene, at.seed) for at in source.signals}
     for at in choose(source.record, pairs, recorded) if recorded else ():
         example = _of(source, at[0], groups[at])

@@ -70,11 +70,8 @@ class Compared:
 
 
 def titles(runs: Sequence[Compared]) -> dict[str, str]:
-    """Return the conditions of all runs by name, with titles that say which is primary in all of
-    them.
-
-    Correct inputs stand first and the shared fault last, as in every audit.
-    """
+    """Return the conditions of all runs, correct inputs first and the shared fault last, with
+    titles that say which is primary in all of them."""
     by_condition: dict[str, str] = {}
     for run in runs:
         for condition, title in run.record.titles.items():
@@ -175,12 +172,10 @@ def same_correct_trials(runs: Sequence[Compared]) -> bool:
 
 
 def together(runs: Sequence[Compared]) -> tuple[Compared, ...]:
-    """Return runs of which sizes of one fault are tested as one family; others as they are.
-
-    Correct inputs that are the same trials at every size are one contrast.
-    """
+    """Return runs of which sizes of one fault are tested as one family; others as they are."""
     if swept(runs) is None:
         return tuple(runs)
+    # Correct inputs that are the same trials at every size are one contrast.
     once = (effect_name(CORRECT),) if same_correct_trials(runs) else ()
     families = decide_sizes([run.record for run in runs], once)
     return tuple(replace(run, family=of) for run, of in zip(runs, families, strict=True))

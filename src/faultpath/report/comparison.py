@@ -55,11 +55,8 @@ def same(runs: Sequence[Compared]) -> str:
 
 
 def sentences(runs: Sequence[Compared]) -> tuple[str, ...]:
-    """Return what is significant over all sizes, where audits are significant in opposite
-    directions, what qualifies it, and the caveat.
-
-    Audits of other variants answer other questions, and are not held against each other.
-    """
+    """Return what is significant over all sizes, where audits of the same variants are significant
+    in opposite directions, what qualifies it, and the caveat."""
     conclusions = [
         f"{title}: significant {sides}."
         for condition, title in titles(runs).items()

@@ -70,11 +70,8 @@ def found(result: AuditResult, what: str) -> Answer:
 
 
 def holds_when_shared(result: AuditResult) -> Answer:
-    """Return whether the repair is significantly ahead under the shared fault.
-
-    Away from floor and ceiling, and not because the baseline's trials failed. `UserError` for a
-    result without a shared fault.
-    """
+    """Return whether the repair is significantly ahead under the shared fault, away from floor and
+    ceiling and not because the baseline's trials failed; `UserError` without a shared fault."""
     if SHARED not in result.titles:
         raise UserError("the result has no shared fault, so nothing says whether the repair holds.")
     effect = result.effect(SHARED)

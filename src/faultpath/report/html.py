@@ -41,7 +41,7 @@ def report_page(source: ReportInput) -> str:
     why = adding(source, pairs) if significant else None
     tables = (ended(result), secondary_table(result))
     effects, axis = effect_rows(result)
-    listed = [] if sampled else pairs
+    listed = () if sampled else pairs
     grids = [
         (
             name,
@@ -105,19 +105,14 @@ def _fault(source: ReportInput) -> str:
 
 
 def write_report(source: ReportInput, folder: Path) -> list[Path]:
-    """Write `report.html` and `table.md` into `folder`; return their paths.
-
-    `UserError` as `write_pages`.
-    """
+    """Write `report.html` and `table.md` into `folder`; return their paths."""
     pages = {"report.html": report_page(source), "table.md": markdown_table(source.record)}
     return write_pages(pages, folder)
 
 
 def _finding(result: AuditResult) -> list[tuple[Effect, str]]:
-    """Return the two effects of a reversal, each with where it holds; without one, nothing.
-
-    Of an interaction only the change is significant: an effect alone may be a point estimate.
-    """
+    """Return the two effects of a reversal, each with where it holds; without one, nothing."""
+    # Of an interaction only the change is significant: an effect alone may be a point estimate.
     for moved in result.changes:
         if moved.turn == "reversal":
             ends = ((result.effect(end), where(end)) for end in (moved.isolated, SHARED))

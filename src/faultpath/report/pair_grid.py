@@ -34,10 +34,8 @@ def pair_grid(
 
     `counts` are of all pairs; without `pairs` they stand alone.
 
-    With several seeds a scene is a stack of cells, one a seed. Triangles that point up are scenes
-    that only the repair solved, pointing down only the baseline; a large disc is both, a small ring
-    neither, a cross in a red box a pair that does not count. `names` says what the system calls its
-    ends. A cell whose scene and seed are among `shown` is a link to them in the viewer.
+    With several seeds a scene is a stack of cells, one a seed. `names` says what the system calls
+    its ends. A cell whose scene and seed are among `shown` is a link to them in the viewer.
     """
     summary = ", ".join(f"{_short(k)} {n}" for k, n in counts.items() if n or k in _ALWAYS)
     ordered = sorted(pairs, key=lambda p: (p.topology, p.index, p.scene, p.seed))
