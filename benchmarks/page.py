@@ -19,8 +19,7 @@ from benchmarks.results import (
     record,
 )
 from benchmarks.waits import STEPS, TESTS
-from faultpath.report.tables import MISSING, Line, Table, line
-from faultpath.report.tables.markdown import grid
+from faultpath.report.tables import MISSING, Line, Table, line, markdown_grid
 
 _COLUMNS = ("faultpath", "compared with", "ratio")
 _A_STEP = {VEHICLE_STEPS: "µs a vehicle and step", LOOP_STEPS: "µs a step"}
@@ -33,7 +32,7 @@ def all_rows() -> str:
 
 def rows(records: Sequence[Record]) -> str:
     """Return the table of all rows and, below it, why some were not measured."""
-    table = grid(Table(columns=_COLUMNS, lines=tuple(map(_line, records))))
+    table = markdown_grid(Table(columns=_COLUMNS, lines=tuple(map(_line, records))))
     notes = [f"- {record.name}: {note}" for record in records for note in _notes(record)]
     return "\n\n".join([table, *(["\n".join(notes)] if notes else [])])
 
@@ -121,7 +120,9 @@ def waits() -> str:
         for clone in clones.values()
     )
     columns = ("what it does", "time")
-    table = grid(Table(corner="command", columns=columns, lines=tuple(lines), words=columns[:1]))
+    table = markdown_grid(
+        Table(corner="command", columns=columns, lines=tuple(lines), words=columns[:1])
+    )
     return f"{table}\n\nMeasured: {'; '.join(dict.fromkeys(measured))}."
 
 
@@ -139,7 +140,7 @@ def gpu() -> str:
     )
     commands = ", ".join(dict.fromkeys(f"`{figures['command']}`" for figures in machines.values()))
     parts = [
-        grid(Table(corner="Control step", columns=columns, lines=tuple(lines))),
+        markdown_grid(Table(corner="Control step", columns=columns, lines=tuple(lines))),
         f"Measured by {commands}: {origins}.",
     ]
     return "\n\n".join(

@@ -23,8 +23,8 @@ from faultpath.api.folders import (
     SCAN,
     SCAN_MADE_FROM,
 )
-from faultpath.report.sentences.words import words
-from faultpath.report.tables.escapes import html as escape
+from faultpath.report.escapes import html as escape
+from faultpath.report.sentences import words
 from faultpath.run.provenance import RunProvenance
 
 sys.path += [

@@ -23,9 +23,8 @@ from faultpath.api.folders import MAP, RECORD, SCAN, as_text
 from faultpath.api.replaying import shown_first
 from faultpath.api.runs import open_run
 from faultpath.report.map import tables
-from faultpath.report.sentences.words import words
-from faultpath.report.tables import Table
-from faultpath.report.tables.markdown import blocks
+from faultpath.report.sentences import words
+from faultpath.report.tables import Table, markdown_blocks
 from faultpath.run.deliveries import Deliveries
 from faultpath.run.plan import SystemSpec
 from faultpath.run.provenance import RunProvenance, seal
@@ -87,7 +86,7 @@ def reversal_map(folder: Path) -> MapResult:
     analysis = replace(analysis, facts=facts)
     record = analysis.conclude(read_outcomes(folder / OUTCOMES), findings, points)
     (folder / MAP).write_text(record.model_dump_json(indent=1) + "\n", "utf-8")
-    (folder / "table.md").write_text(blocks(tables(record)) + "\n", "utf-8")
+    (folder / "table.md").write_text(markdown_blocks(tables(record)) + "\n", "utf-8")
     _reseal(folder)
     load.cache_clear()
     return record

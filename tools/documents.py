@@ -34,19 +34,19 @@ from pictures import digest, made_from, make_images, name_of
 from rendering import macros
 
 from faultpath.report.sentences import phrases
-from faultpath.report.tables.markdown import block, grid
+from faultpath.report.tables import markdown_block, markdown_grid
 from faultpath.run.store.signals import SIGNALS
 
 sys.path.insert(0, str(ROOT))
 from benchmarks import page as performance
 
 NAMES = {
-    "block": block,
+    "block": markdown_block,
     "central": central,
     "comparison": comparison,
     "facts": facts,
     "figures_of": figures_of,
-    "grid": grid,
+    "grid": markdown_grid,
     "load": load,
     "paper": paper_blocks,
     "phrases": phrases,

@@ -85,7 +85,7 @@ class Film(Svg):
             always, _, body = motion.partition("|")
             plays = f"animation:{name} {self.loop_s:g}s linear infinite"
             css += f".{name}{{{always}{plays}}}@keyframes {name}{{{body}}}\n"
-        return self.render(standalone=True).replace("</style>", f"{css}</style>", 1) + "\n"
+        return str(self.render(standalone=True)).replace("</style>", f"{css}</style>", 1) + "\n"
 
     def trail(self, points: Sequence[Point], times: Sequence[float], side: str) -> None:
         """Draw a line that grows with time."""

@@ -21,7 +21,7 @@ from faultpath_paper.central import (
 from faultpath_paper.report.page import sweep_plot
 
 from faultpath.analyses.model import CORRECT, SHARED
-from faultpath.report.sentences import shares, wording
+from faultpath.report.sentences import phrases, wording
 from faultpath.report.svg import template
 from faultpath.run.store.folder import read_outcomes
 
@@ -94,7 +94,7 @@ def _case(run: Run) -> Case:
         isolated=isolated,
         shared=shared,
         change=PrintedEffect.of(wording.with_interval(moved), moved.significant),
-        ahead=shares.ahead(question, frequency)
+        ahead=phrases.ahead(question, frequency)
         .replace(question.repair, "the retrained one")
         .replace(question.baseline, "the original"),
         reversal=(_MODULE, "reversal") in ((c.isolated, c.turn) for c in record.changes),

@@ -8,9 +8,9 @@ from typing import Any
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 from faultpath.core.text import counted, series
+from faultpath.report.escapes import markdown as escape
 from faultpath.report.sentences import wording
 from faultpath.report.tables import MISSING
-from faultpath.report.tables.escapes import markdown as escape
 
 TEMPLATES = Path(__file__).parent / "templates"
 

@@ -15,10 +15,10 @@ from rich.console import Console
 
 from faultpath.analyses.model import AuditResult
 from faultpath.report.audit_tables import DIFFERENCE, by_quantity
-from faultpath.report.map_pictures import correlation_picture, map_picture
+from faultpath.report.map import correlation_picture, map_picture
 from faultpath.report.scan_pictures import triangle
-from faultpath.report.sentences.words import words
-from faultpath.report.tables.markdown import grid
+from faultpath.report.sentences import words
+from faultpath.report.tables import markdown_grid
 from faultpath.report.terminal import decision
 
 MAP_PICTURES = {"map": map_picture, "correlation": correlation_picture}
@@ -40,7 +40,7 @@ MEASURES = {
 
 def quantities(record: AuditResult) -> str:
     """Return success of both variants and their difference, one condition a column."""
-    return grid(by_quantity(record, ("baseline", "repair", *DIFFERENCE, "holm")))
+    return markdown_grid(by_quantity(record, ("baseline", "repair", *DIFFERENCE, "holm")))
 
 
 def printed(name: str) -> str:

@@ -6,7 +6,7 @@ import pytest
 from faultpath.analyses.decide import decide
 from faultpath.analyses.judging import pair_results
 from faultpath.analyses.model import AuditResult
-from faultpath.report.sentences.words import words
+from faultpath.report.sentences import words
 from faultpath.run.received.question import JudgeQuestion
 from faultpath.run.received.results import Received
 from faultpath.system.outcome import Status

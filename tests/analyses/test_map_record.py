@@ -12,7 +12,7 @@ from faultpath.analyses.map.joint import Errors, lattice_weights
 from faultpath.analyses.map.lattice import COARSE, SHOWN, UNITS, lattice, surface_weights
 from faultpath.analyses.map.model import MapResult
 from faultpath.analyses.map.surface import Combined, Differences
-from faultpath.report.sentences.words import words
+from faultpath.report.sentences import words
 
 X, Y = np.array(lattice(SHOWN), dtype=float).T / UNITS
 DECIDES = re.compile(r"(new|old) (is|does|is expected)")

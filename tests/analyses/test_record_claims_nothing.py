@@ -22,11 +22,9 @@ from faultpath.analyses.effects import Change, Effect
 from faultpath.analyses.model import CORRECT, SHARED, AuditResult
 from faultpath.core.errors import UserError
 from faultpath.core.streams import generator
-from faultpath.report.sentences import phrases, wording
+from faultpath.report.sentences import phrases, wording, words
 from faultpath.report.sentences.answers import answers
-from faultpath.report.sentences.phrases import in_short
-from faultpath.report.sentences.shares import ahead
-from faultpath.report.sentences.words import words
+from faultpath.report.sentences.phrases import ahead, in_short
 from faultpath.run.question import StopWhen
 from faultpath.run.trials import Trials
 from faultpath.system import Status

@@ -18,7 +18,7 @@ from outcome_tables import (
 from faultpath.analyses.decide import decide
 from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.core.errors import UserError
-from faultpath.report.sentences.words import words
+from faultpath.report.sentences import words
 from faultpath.run.trials import Trials
 from faultpath.system import Status
 

@@ -10,7 +10,7 @@ from faultpath.analyses.audit import audit_analysis
 from faultpath.analyses.decide import decide
 from faultpath.core.errors import UserError
 from faultpath.report.audit_tables import markdown_table
-from faultpath.report.sentences.words import words
+from faultpath.report.sentences import words
 from faultpath.report.terminal import decision
 from faultpath.run.plan import SystemSpec
 from faultpath.run.question import AuditQuestion, ask

@@ -8,9 +8,9 @@ from outcome_tables import BASELINE, REPAIR, SCENES, SPOILS, conditions, facts, 
 
 from faultpath.analyses.decide import decide
 from faultpath.analyses.model import CORRECT, SHARED, AuditResult
+from faultpath.report.sentences import words
 from faultpath.report.sentences.answers import answers
 from faultpath.report.sentences.phrases import in_short
-from faultpath.report.sentences.words import words
 from faultpath.run.trials import Trials
 from faultpath.system import Status
 

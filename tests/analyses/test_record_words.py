@@ -7,10 +7,9 @@ from outcomes import trial
 from faultpath.analyses.decide import decide
 from faultpath.analyses.model import CORRECT, SHARED, AuditResult
 from faultpath.core.errors import UserError
+from faultpath.report.sentences import words
 from faultpath.report.sentences.answers import answers
-from faultpath.report.sentences.phrases import change, estimand, in_short
-from faultpath.report.sentences.shares import ahead
-from faultpath.report.sentences.words import words
+from faultpath.report.sentences.phrases import ahead, change, estimand, in_short
 from faultpath.run.trials import Trials
 from faultpath.system import Status
 

@@ -1,6 +1,7 @@
 """A scan: which trials it runs, what it lists, in words and commands, and what it refuses."""
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +13,8 @@ from faultpath.analyses.scan.analysis import COSTLY_PP, FIRST_SCENES, HALVINGS, 
 from faultpath.analyses.scan.model import ScanResult
 from faultpath.analyses.scan.ranking import PROBED_SCENES
 from faultpath.core.errors import UserError
-from faultpath.report.scan import every_table, tables
-from faultpath.report.sentences.words import words
+from faultpath.report.scan import tables
+from faultpath.report.sentences import words
 from faultpath.stats.cancelling import LEVEL, MOST, REGAINED
 from faultpath.stats.estimate import ALPHA
 
@@ -87,7 +88,7 @@ def test_that_few_scenes_are_left_for_pairs_is_said(scenes: int, few: bool):
 
 def test_few_pairs_stand_in_the_terminal_and_words_say_what_is_bold():
     record, *_ = scanned(Planted(both("one.a", "two.b"), ("a", "b")))
-    for shown in (tables(record), every_table(record)):
+    for shown in (tables(record), tables(record, math.inf)):
         (pairs,) = (table for table in shown if table.name == "every-pair")
         asides = [entry.aside for line in pairs.lines for entry in line.entries if entry.detected]
         assert asides == ["listed"] * len(record.versions[0].listed) != []
@@ -98,7 +99,7 @@ def test_few_pairs_stand_in_the_terminal_and_words_say_what_is_bold():
     many = version.model_copy(update={"pairs": version.pairs * 4})
     crowd = record.model_copy(update={"versions": (many,)})
     assert "every-pair" not in [table.name for table in tables(crowd)]
-    assert "every-pair" in [table.name for table in every_table(crowd)]
+    assert "every-pair" in [table.name for table in tables(crowd, math.inf)]
 
 
 def test_an_error_that_raises_success_goes_no_further():

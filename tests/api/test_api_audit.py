@@ -16,7 +16,7 @@ from faultpath.api.display import Display
 from faultpath.core.files.parquet import read_table
 from faultpath.report.audit_tables import markdown_table
 from faultpath.report.html import report_page
-from faultpath.report.sentences.words import words
+from faultpath.report.sentences import words
 from faultpath.report.terminal import decision
 from faultpath.run.store.folder import OUTCOMES
 from faultpath.run.store.signals import encode_signals

@@ -11,7 +11,7 @@ from toy_audits import ROOT
 
 import faultpath
 from faultpath.core.errors import UserError
-from faultpath.report.sentences.words import words
+from faultpath.report.sentences import words
 
 REFERENCE = ROOT / "docs" / "reference"
 

@@ -13,7 +13,7 @@ from cli_runs import TOY, edit, faultpath, flags, shards
 import faultpath as library
 from faultpath.analyses.scan.model import ScanResult
 from faultpath.cli.main import INTERRUPTED
-from faultpath.report.sentences.words import words
+from faultpath.report.sentences import words
 from faultpath.run.store.folder import RunFolder
 
 QUESTIONS: dict[str, dict[str, object]] = {

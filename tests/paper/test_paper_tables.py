@@ -7,7 +7,7 @@ from faultpath_paper.results import Results
 from faultpath_quadrotor.training import trajectories
 from toy_runs import SCENES, Ends, calibrated, measured, page, run, tables, won
 
-from faultpath.report.tables.markdown import block
+from faultpath.report.tables import markdown_block
 from faultpath.system import Status
 
 
@@ -63,7 +63,7 @@ CASES = {
 @pytest.mark.parametrize("name", CASES)
 def test_a_table_is_what_was_approved(name: str, approved) -> None:
     of, table, results = CASES[name]
-    approved(name, block(tables(page(of), results())[table]))
+    approved(name, markdown_block(tables(page(of), results())[table]))
 
 
 def test_the_observer_flies_once_and_scenes_of_training_have_their_wind() -> None:

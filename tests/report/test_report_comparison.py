@@ -15,7 +15,7 @@ from faultpath.analyses.model import Condition
 from faultpath.report.compared import Compared, differing, titles, together
 from faultpath.report.comparison import effects, headline, page, sentences, shown
 from faultpath.report.inputs import ReportInput
-from faultpath.report.tables.markdown import grid
+from faultpath.report.tables import markdown_grid
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -89,7 +89,7 @@ CASES = {
 def test_what_is_said_is_what_was_approved(name: str, one_seed: ReportInput, approved) -> None:
     runs = CASES[name](one_seed)
     facts = [f"{fact}: {' | '.join(values)}" for fact, values in dict(differing(runs)).items()]
-    parts = (headline(runs), *sentences(runs), "", *facts, "", grid(effects(runs)))
+    parts = (headline(runs), *sentences(runs), "", *facts, "", markdown_grid(effects(runs)))
     approved(name, "\n".join(parts))
 
 

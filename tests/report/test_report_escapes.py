@@ -10,12 +10,13 @@ from hypothesis import strategies as st
 from markdown_it import MarkdownIt
 from reproduction_toys import ledger
 
+from faultpath.report import escapes
 from faultpath.report.audit_tables import markdown_table
 from faultpath.report.frame import render
 from faultpath.report.inputs import ReportInput
 from faultpath.report.svg import Svg
-from faultpath.report.tables import Entry, Line, Table, escapes
-from faultpath.report.tables.markdown import block as table_markdown
+from faultpath.report.tables import Entry, Line, Table
+from faultpath.report.tables import markdown_block as table_markdown
 
 NASTY = '<script>alert("x")</script> & 100 % of _it_'
 PARSER = MarkdownIt("commonmark", {"html": True}).enable(["table", "strikethrough"])

@@ -7,11 +7,9 @@ from xml.etree import ElementTree
 from faultpath.analyses.model import Ahead, AuditResult, ConditionBreakEven
 from faultpath.analyses.pairs import read_pairs
 from faultpath.report.effects import (
-    effect_axis,
     effect_rows,
-    frequency_panels,
-    no_break_even,
     panel,
+    share_panels,
     shared_axis,
 )
 from faultpath.report.inputs import ReportInput
@@ -29,15 +27,15 @@ def test_an_axis_covers_any_number_that_a_record_may_hold() -> None:
 
 def test_all_figures_are_xml(one_seed: ReportInput) -> None:
     record = one_seed.record
-    pairs = read_pairs(one_seed.trials, record)
+    pairs, (rows, axis) = read_pairs(one_seed.trials, record), effect_rows(record)
     drawn = [
-        *(row.picture for row in effect_rows(record)),
-        effect_axis(record),
+        *(row.picture for row in rows),
+        axis,
         _forest(record),
         pair_grid('"<title>"', pairs, {}, {"timeout": "<late>"}),
         pair_grid("nothing", (), {}, {}),
         *(sign for sign, _ in pair_key(pairs)),
-        *(picture for picture, _ in frequency_panels(record)),
+        *(picture for picture, _ in share_panels(record)[0]),
         *map(fork_panel, forks(one_seed)),
     ]
     for picture in drawn:
@@ -46,7 +44,7 @@ def test_all_figures_are_xml(one_seed: ReportInput) -> None:
 
 def _forest(record: AuditResult, **changes: object) -> str:
     effect = record.effects[0].model_copy(update=changes)
-    return panel("All", [("Correct inputs", "", effect)], shared_axis([effect]))
+    return panel("All", [("Correct inputs", effect)], shared_axis([effect]))
 
 
 def test_only_what_is_decided_is_bold_and_filled(one_seed: ReportInput) -> None:
@@ -75,7 +73,8 @@ def _panel(
         condition="shared", over="frequency", result=result, curve=curve, ahead=ahead
     )
     shown = record.model_copy(update={"break_evens": (condition,)})
-    return [picture for picture, _ in frequency_panels(shown)], no_break_even(shown)
+    panels, sentences = share_panels(shown)
+    return [picture for picture, _ in panels], sentences
 
 
 def test_the_curve_is_coloured_where_a_variant_is_decided(one_seed: ReportInput) -> None:

@@ -12,7 +12,7 @@ from faultpath.analyses.map.model import MapResult
 from faultpath.analyses.pairs import Pair
 from faultpath.analyses.scan.model import ScanResult
 from faultpath.report.frame import STYLES
-from faultpath.report.map_pictures import correlation_picture, map_picture
+from faultpath.report.map import correlation_picture, map_picture
 from faultpath.report.pair_grid import pair_grid
 from faultpath.report.scan_pictures import strip, triangle
 from faultpath.report.svg import template

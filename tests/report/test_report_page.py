@@ -13,8 +13,7 @@ from faultpath.analyses.pairs import PairKind, read_pairs
 from faultpath.core.text import capital
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
-from faultpath.report.sentences import phrases
-from faultpath.report.sentences.words import words
+from faultpath.report.sentences import phrases, words
 from faultpath.report.viewer import captions
 from faultpath.stats.estimate import DEGREES, EM
 

@@ -10,7 +10,7 @@ from rich.console import Console
 from faultpath.analyses.facts import EarlierAnalysis
 from faultpath.analyses.model import AuditResult
 from faultpath.faults import parse_fault
-from faultpath.report.audit_tables import by_condition, decided_for, markdown_table
+from faultpath.report.audit_tables import by_condition, markdown_table, version_ahead
 from faultpath.report.html import _finding, report_page, write_report
 from faultpath.report.inputs import ReportInput
 from faultpath.report.sentences.wording import faults, seeds_run
@@ -124,6 +124,6 @@ def test_an_interval_that_leaves_out_0_undetected_has_its_p(one_seed: ReportInpu
     record, left_out = one_seed.record, "the interval excludes 0"
     undetected = record.effects[-1].model_copy(update={"sign": 0, "corrected_p": 0.25})
     changed = record.model_copy(update={"effects": (*record.effects[:-1], undetected)})
-    assert "0.250" in decided_for(changed, undetected).aside
+    assert "0.250" in version_ahead(changed, undetected).aside
     assert left_out in markdown_table(changed)
     assert left_out not in markdown_table(record)

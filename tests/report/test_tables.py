@@ -5,10 +5,8 @@ import io
 import pytest
 from rich.console import Console
 
-from faultpath.report.tables import Entry, Line, Table, line
-from faultpath.report.tables.html import html
-from faultpath.report.tables.markdown import block, grid
-from faultpath.report.tables.terminal import drawn
+from faultpath.report.tables import Entry, Line, Table, html, line, markdown_block, markdown_grid
+from faultpath.report.terminal import drawn
 
 TABLE = Table(
     title="What came out",
@@ -31,7 +29,7 @@ def _terminal(table: Table, width: int = 100, **how: bool) -> str:
     return console.file.getvalue()  # type: ignore[attr-defined] - a StringIO
 
 
-RENDERERS = {"markdown": grid, "html": html, "terminal": _terminal}
+RENDERERS = {"markdown": markdown_grid, "html": html, "terminal": _terminal}
 
 
 @pytest.mark.parametrize("name", RENDERERS)
@@ -44,9 +42,9 @@ def test_names_are_shown_literally() -> None:
     entry = Entry(text=STRANGE, published=STRANGE, detected=True)
     lines = (Line(label=STRANGE), Line(label=STRANGE, entries=(entry,)))
     odd = Table(name="odd", title=STRANGE, columns=(STRANGE,), lines=lines, notes=(STRANGE,))
-    assert "<b>" not in block(odd)
-    assert r"a\_b" in block(odd)
-    assert r"\[1\] \| \*" in block(odd)
+    assert "<b>" not in markdown_block(odd)
+    assert r"a\_b" in markdown_block(odd)
+    assert r"\[1\] \| \*" in markdown_block(odd)
     assert "<b>" not in html(odd)
     assert "<caption>" not in html(TABLE, caption=False)
     assert html(Table(columns=("a", "b"), lines=(line("x", "1"),))).endswith(

@@ -14,7 +14,7 @@ from faultpath.api.runs import FinishedRun
 from faultpath.api.systems import LOCAL, check_executor, executor_of
 from faultpath.core.errors import Stopped, UserError
 from faultpath.core.files.atomic import write_text
-from faultpath.report.tables import markdown
+from faultpath.report.tables import markdown_block
 from faultpath.run.provenance import AGAIN, RunProvenance, unseal
 from faultpath.run.store.folder import DELIVERIES
 from faultpath.run.work.executor import Progress
@@ -55,7 +55,7 @@ class ReproductionRun(FinishedRun):
         raise UserError(f"the pages of the reproduction in {self.folder} stand there already.")
 
     def _repr_markdown_(self) -> str:
-        return "\n\n".join(map(markdown.block, self.record.tables))
+        return "\n\n".join(map(markdown_block, self.record.tables))
 
 
 def read_reproduction(folder: Path) -> ReproductionRun:
@@ -151,5 +151,5 @@ def write_pages(place: Path, record: Reproduction, provenance: RunProvenance) ->
     """Write the page, the tables and the ledger of a reproduction into a folder."""
     page = reproduction_page(record, provenance, of_page(record, provenance.code.data))
     write_text(place / "reproduction.html", page, place)
-    write_text(place / "tables.md", "\n\n".join(map(markdown.block, record.tables)) + "\n", place)
+    write_text(place / "tables.md", "\n\n".join(map(markdown_block, record.tables)) + "\n", place)
     write_text(place / "ledger.md", ledger_markdown(record.ledger, record.profile), place)

@@ -101,7 +101,7 @@ def _judge(folder: Path | None, as_json: bool) -> None:
 def show(run: "ReproductionRun", whole: bool) -> None:
     """Print the ledger of the whole paper, or the tables of some pages."""
     from faultpath.api.display import SafeConsole
-    from faultpath.report.tables.terminal import drawn
+    from faultpath.report.terminal import drawn
     from faultpath_paper.report import words
     from faultpath_paper.report.terminal import ledger_view
 

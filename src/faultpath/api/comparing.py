@@ -14,7 +14,7 @@ from faultpath.core.files.atomic import check_output, write_text
 from faultpath.report.compared import Compared, differing, together
 from faultpath.report.comparison import headline, page, sentences
 from faultpath.report.frame import PAGE
-from faultpath.report.sentences.words import words
+from faultpath.report.sentences import words
 
 
 @dataclass(frozen=True, repr=False, eq=False)

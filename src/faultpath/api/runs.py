@@ -27,7 +27,7 @@ from faultpath.report.html import write_report
 from faultpath.report.inputs import ReportInput
 from faultpath.report.map import write_map
 from faultpath.report.scan import write_scan
-from faultpath.report.sentences.words import Words, words
+from faultpath.report.sentences import Words, words
 from faultpath.run.provenance import AGAIN, RunProvenance, unseal
 from faultpath.run.store.tables import encode_outcomes
 

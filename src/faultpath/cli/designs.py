@@ -40,8 +40,7 @@ def scan(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     from faultpath.api.display import SafeConsole
     from faultpath.api.rounds import scan
     from faultpath.report.scan import ranking_table, tables
-    from faultpath.report.tables.terminal import Parted
-    from faultpath.report.terminal import conclusion
+    from faultpath.report.terminal import Parted, conclusion
 
     result = scan(system, **arguments, progress=display(as_json))
     console = SafeConsole()

@@ -75,8 +75,7 @@ class Gate:
         """Write what was asked for, say what a build fails for, and return the exit status."""
         from faultpath.core.files.atomic import write_file, write_text
         from faultpath.core.files.opening import contents
-        from faultpath.report.build import junit, summary
-        from faultpath.report.gate import found
+        from faultpath.report.gate import found, junit, summary
 
         records = [run.record for run in runs]
         if self.junit is not None:

@@ -52,7 +52,7 @@ def replay(
     from faultpath.api.replaying import chosen_scenes, keep_signals, replay, where_parted
     from faultpath.core.text import counted
     from faultpath.report.sentences.parting import compared, parted
-    from faultpath.report.tables.terminal import STYLES
+    from faultpath.report.terminal import STYLES
 
     if as_json and not where:
         raise UserError("--json prints what --where finds: give --where too.")

@@ -39,8 +39,7 @@ def trace(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     Exits with 1 where that differs from what is declared."""
     from faultpath.api.display import SafeConsole
     from faultpath.api.job import begin
-    from faultpath.report.tables.terminal import STYLES, Parted
-    from faultpath.report.terminal import interface_table, trace_table
+    from faultpath.report.terminal import STYLES, Parted, interface_table, trace_table
     from faultpath.run.check.tracing import trace_system
 
     question, chosen, _, _ = begin("api.trace", TraceQuestion, system, arguments, display())
@@ -72,7 +71,7 @@ def check(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     from faultpath.api.checks import check
     from faultpath.api.display import SafeConsole
     from faultpath.core.text import counted
-    from faultpath.report.tables.terminal import STYLES
+    from faultpath.report.terminal import STYLES
 
     report = check(system, **arguments, progress=display())
     if as_json:

@@ -4,7 +4,7 @@ from faultpath.api.display import SafeConsole
 from faultpath.core.text import counted
 from faultpath.report.sentences.wording import interval, plain
 from faultpath.report.tables import MISSING, Line, Table, line
-from faultpath.report.tables.terminal import drawn
+from faultpath.report.terminal import drawn
 from faultpath.stats.contrast import Contrast
 from faultpath.stats.estimate import Estimate
 

@@ -1,1 +1,1 @@
-"""Reports from records and outcome tables: one HTML page, Markdown and the terminal."""
+"""Results in words, tables and pictures: as pages, Markdown, XML and on the terminal."""

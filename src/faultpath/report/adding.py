@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from markupsafe import Markup
 from numpy.typing import NDArray
 
 from faultpath.analyses.examples import choose
@@ -69,11 +70,8 @@ class Adding:
 
 
 def adding(source: ReportInput, pairs: Sequence[Pair]) -> Adding | None:
-    """Return the first scene of the viewer of which both errors are known under a condition of the
-    fault.
-
-    `None` where the system names no errors, or nothing was recorded.
-    """
+    """Return the first scene of the viewer with both errors known under a condition of the fault;
+    `None` where the system names no errors, or nothing was recorded."""
     groups, recorded = by_scene(pairs), {(at.scene, at.seed) for at in source.signals}
     for at in choose(source.record, pairs, recorded) if recorded else ():
         example = _of(source, at[0], groups[at])
@@ -107,10 +105,10 @@ def _of(source: ReportInput, scene: str, pairs: Mapping[str, Pair]) -> Adding | 
             conditions[name] = lines
     if not conditions:
         return None
-    every = np.concatenate([line.values.ravel() for of in conditions.values() for line in of])
-    every = every[np.isfinite(every)]
-    low, high = (float(end) for end in np.quantile(every, (0.03, 0.97)))
-    whole = float(every.min()), float(every.max())
+    values = np.concatenate([v.values.ravel() for pair in conditions.values() for v in pair])
+    values = values[np.isfinite(values)]
+    low, high = (float(end) for end in np.quantile(values, (0.03, 0.97)))
+    whole = float(values.min()), float(values.max())
     cut = whole[1] - whole[0] > _SQUEEZED * max(high - low, 1e-9)
     last, variants = list(conditions.items())[-1]
     terms = variants[-1].terms
@@ -136,11 +134,11 @@ def _of(source: ReportInput, scene: str, pairs: Mapping[str, Pair]) -> Adding | 
     )
 
 
-def adding_panels(shown: Adding) -> list[str]:
+def adding_panels(shown: Adding) -> list[Markup]:
     """Return a picture of each condition, the baseline above the repair, all on the same axes."""
     upward = covering(shown.span, least=1e-9)
     x = Axis(0.0, shown.longest_s, _LEFT, _WIDTH - _RIGHT)
-    panels: list[str] = []
+    panels: list[Markup] = []
     for title, variants in shown.conditions:
         endings = "; ".join(
             f"{variant.role} {variant.name}: {variant.ended}" for variant in variants

@@ -1,6 +1,6 @@
-"""Finished audits side by side, and what differs between them.
+"""Finished audits beside each other as data: effects, and what differs between the runs.
 
-Every audit keeps its own verdict. Only sizes of one fault are decided anew, as one family.
+Every audit keeps its own result. Only sizes of one fault are tested anew, as one family.
 """
 
 import re
@@ -14,7 +14,6 @@ from faultpath.analyses.model import CORRECT, SHARED, AuditResult
 from faultpath.analyses.sweep import decide_sizes
 from faultpath.report.inputs import ReportInput
 from faultpath.report.sentences import phrases, wording
-from faultpath.report.sentences.findings import of_audit
 from faultpath.report.sentences.headline import headline
 from faultpath.run.provenance import RunProvenance
 from faultpath.stats.estimate import Sign
@@ -34,22 +33,22 @@ class Compared:
     source: ReportInput
     """All that its pages are made from."""
     family: Mapping[str, tuple[Sign, float]] | None = None
-    """For a sweep over sizes: by condition, the side that is decided over all of them together, and
-    the adjusted p. `None` where every audit stands by itself."""
+    """For a sweep over sizes: by condition, the side that is significantly ahead over all of them
+    together, and the adjusted p. `None` where every audit stands by itself."""
 
     @property
     def record(self) -> AuditResult:
-        """Decisions of the audit."""
+        """Result of the audit."""
         return self.source.record
 
     @property
     def provenance(self) -> RunProvenance:
-        """Conditions under which it was made."""
+        """Code and machine that it was made with."""
         return self.source.provenance
 
     def effect(self, condition: str) -> Effect | None:
-        """Return its effect under a condition, as decided beside the others; `None` where it has
-        none."""
+        """Return its effect under a condition, as tested together with the others; `None` where it
+        has none."""
         effect = self.record.effect(condition)
         if effect is None or self.family is None or condition not in self.family:
             return effect
@@ -58,22 +57,12 @@ class Compared:
 
     @property
     def headline(self) -> str:
-        """Its own headline, qualified where not all that it decided stands over all sizes."""
+        """Its own headline, qualified where something in it is not significant over all sizes."""
         own, family = headline(self.record), self.family or {}
         fallen = any(
             e.sign and not family.get(e.condition, (e.sign, 0))[0] for e in self.record.effects
         )
         return f"By itself, and not over all sizes: {own}" if fallen else own
-
-    @property
-    def scenes_run(self) -> str:
-        """The number of scenes, and of how many where it could have taken more."""
-        return phrases.scenes_run(self.record)
-
-    @property
-    def findings(self) -> tuple[str, ...]:
-        """What was found in its trials, in words."""
-        return of_audit(self.record)
 
     def absent(self, condition: str) -> str:
         """Say why it has no effect under a condition."""
@@ -81,11 +70,8 @@ class Compared:
 
 
 def titles(runs: Sequence[Compared]) -> dict[str, str]:
-    """Return the conditions of all runs by name, with titles that say which is primary in all of
-    them.
-
-    Correct inputs stand first and the shared fault last, as in every audit.
-    """
+    """Return the conditions of all runs, correct inputs first and the shared fault last, with
+    titles that say which is primary in all of them."""
     by_condition: dict[str, str] = {}
     for run in runs:
         for condition, title in run.record.titles.items():
@@ -132,7 +118,7 @@ def _question(runs: Sequence[Compared]) -> dict[str, tuple[str, ...]]:
 
 
 def differing(runs: Sequence[Compared]) -> Facts:
-    """Return what differs between runs: what was asked first, then what ran, then on what."""
+    """Return what differs between runs: first in question and trials, then in code and machine."""
     environments = [
         {
             "Code, data and packages": code.system_fingerprint[:_DIGITS],
@@ -186,12 +172,10 @@ def same_correct_trials(runs: Sequence[Compared]) -> bool:
 
 
 def together(runs: Sequence[Compared]) -> tuple[Compared, ...]:
-    """Return runs of which sizes of one fault are decided as one family; others as they are.
-
-    Correct inputs that are the same trials at every size are one contrast.
-    """
+    """Return runs of which sizes of one fault are tested as one family; others as they are."""
     if swept(runs) is None:
         return tuple(runs)
+    # Correct inputs that are the same trials at every size are one contrast.
     once = (effect_name(CORRECT),) if same_correct_trials(runs) else ()
     families = decide_sizes([run.record for run in runs], once)
     return tuple(replace(run, family=of) for run, of in zip(runs, families, strict=True))

@@ -1,8 +1,7 @@
-"""Audits side by side, as a table, on the terminal, and as one page that needs no network."""
+"""Finished audits beside each other in words, as tables, on the terminal and as a page."""
 
 from collections.abc import Iterator, Sequence
 
-from markupsafe import Markup
 from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.text import Text
@@ -10,7 +9,7 @@ from rich.text import Text
 from faultpath.analyses.family import ALPHA
 from faultpath.analyses.model import where
 from faultpath.core.text import series, shortened
-from faultpath.report.audit_tables import decided_for
+from faultpath.report.audit_tables import version_ahead
 from faultpath.report.compared import (
     Compared,
     Facts,
@@ -23,10 +22,11 @@ from faultpath.report.compared import (
 from faultpath.report.effects import Row, panel, shared_axis
 from faultpath.report.frame import render
 from faultpath.report.sentences import wording
+from faultpath.report.sentences.findings import of_audit
+from faultpath.report.sentences.phrases import scenes_run
 from faultpath.report.svg import tick_label
-from faultpath.report.tables import MISSING, Entry, Line, Table, line
-from faultpath.report.tables.html import html
-from faultpath.report.tables.terminal import Parted, drawn
+from faultpath.report.tables import MISSING, Entry, Line, Table, html, line
+from faultpath.report.terminal import Parted, drawn
 from faultpath.run.store.folder import OUTCOMES
 
 _LABEL = 28
@@ -35,7 +35,7 @@ _LABEL = 28
 
 def headline(runs: Sequence[Compared]) -> str:
     """Return what all sizes of a sweep answer under the primary condition; of other runs how many
-    there are, and where they are decided in opposite directions."""
+    there are, and where they are significant in opposite directions."""
     if sweep := swept(runs):
         primary = runs[0].record.facts.primary
         answer = _by_size(runs, primary, sweep[1])
@@ -55,23 +55,19 @@ def same(runs: Sequence[Compared]) -> str:
 
 
 def sentences(runs: Sequence[Compared]) -> tuple[str, ...]:
-    """Return what sizes decide together, where audits are decided in opposite directions, what
-    qualifies it, and the caveat.
-
-    Audits of other variants ask something else, and are not held against each other.
-    """
+    """Return what is significant over all sizes, where audits of the same variants are significant
+    in opposite directions, what qualifies it, and the caveat."""
     conclusions = [
         f"{title}: significant {sides}."
         for condition, title in titles(runs).items()
         for sides in _opposite(runs, condition)
     ]
-    if not conclusions and len({_variants(run) for run in runs}) == len(runs):
-        conclusions = [
-            "No two of these audits compare the same versions, so none can contradict another."
-        ]
-    conclusions = conclusions or [
-        "No two audits of the same versions are significant in opposite directions."
-    ]
+    if not conclusions:
+        conclusions = (
+            ["No two of these audits compare the same versions, so none can contradict another."]
+            if len({_variants(run) for run in runs}) == len(runs)
+            else ["No two audits of the same versions are significant in opposite directions."]
+        )
     if len({run.record.facts.system for run in runs}) > 1:
         conclusions += [
             "The runs are of different systems: the same name need not mean the same thing."
@@ -84,7 +80,7 @@ def sentences(runs: Sequence[Compared]) -> tuple[str, ...]:
 
 
 def _over_sizes(runs: Sequence[Compared]) -> Iterator[str]:
-    """Yield what the number of sizes does to what was decided; nothing for other runs."""
+    """Yield what is significant over all sizes; nothing for runs that are no sweep."""
     sweep = swept(runs)
     if sweep is None:
         return
@@ -100,25 +96,27 @@ def _over_sizes(runs: Sequence[Compared]) -> Iterator[str]:
 
 def _by_size(runs: Sequence[Compared], condition: str, sizes: Sequence[float]) -> str:
     """Return who is ahead at which sizes: `gru ahead at 0.1; nothing significant at 0.05`."""
-    at: dict[str, list[str]] = {}
+    by_answer: dict[str, list[str]] = {}
     for run, size in sorted(zip(runs, sizes, strict=True), key=lambda pair: pair[1]):
         effect, words = run.effect(condition), "nothing significant"
         if effect and effect.sign:
             words = f"{run.record.winner(effect.sign)} ahead"
-        at.setdefault(words, []).append(tick_label(size))
-    if len(at) == 1:
-        (words,) = at
+        by_answer.setdefault(words, []).append(tick_label(size))
+    if len(by_answer) == 1:
+        (words,) = by_answer
         return f"{words} at {'every' if words.endswith('ahead') else 'any'} size"
-    return "; ".join(f"{words} at {series(of)}" for words, of in at.items())
+    return "; ".join(f"{words} at {series(ticks)}" for words, ticks in by_answer.items())
 
 
 def _opposite(runs: Sequence[Compared], condition: str) -> Iterator[str]:
-    """Yield which runs are decided for which variant, for variants that win in some runs and lose
-    in others: `for a (baseline) in 1, for b (repair) in 2 and 3`."""
-    decided = [(run, effect) for run in runs if (effect := run.effect(condition)) and effect.sign]
-    for variants in dict.fromkeys(_variants(run) for run, _ in decided):
+    """Yield in which runs which variant is significantly ahead, for variants that win in some runs
+    and lose in others: `for a (baseline) in 1, for b (repair) in 2 and 3`."""
+    significant = [
+        (run, effect) for run in runs if (effect := run.effect(condition)) and effect.sign
+    ]
+    for variants in dict.fromkeys(_variants(run) for run, _ in significant):
         sides: dict[str, dict[str, list[str]]] = {}
-        for run, effect in decided:
+        for run, effect in significant:
             if _variants(run) != variants:
                 continue
             role = "repair" if effect.sign > 0 else "baseline"
@@ -127,7 +125,7 @@ def _opposite(runs: Sequence[Compared], condition: str) -> Iterator[str]:
             text = f"{run.number} (at the {aside})" if aside else f"{run.number}"
             sides.setdefault(winner, {}).setdefault(f"{winner} ({role})", []).append(text)
         if len(sides) > 1:
-            clauses = [clause for of in sides.values() for clause in of.items()]
+            clauses = [clause for by_role in sides.values() for clause in by_role.items()]
             yield ", ".join(f"for {side} in {series(numbers)}" for side, numbers in clauses)
 
 
@@ -141,8 +139,8 @@ def facts_table(runs: Sequence[Compared], facts: Facts) -> Table:
     for title, values in facts.items():
         lines.append(line(title))
         for value in dict.fromkeys(values):
-            of = [str(r.number) for r, own in zip(runs, values, strict=True) if own == value]
-            lines.append(line(value, series(of)))
+            numbers = [str(run.number) for run, v in zip(runs, values, strict=True) if v == value]
+            lines.append(line(value, series(numbers)))
     columns = ("Runs",)
     return Table(
         title="What differs", corner="Value", columns=columns, words=columns, lines=tuple(lines)
@@ -161,8 +159,8 @@ def effects(runs: Sequence[Compared]) -> Table:
                 continue
             rates = map(wording.plain, effect.rates)
             difference = Entry(text=wording.with_interval(effect), detected=effect.significant)
-            decided = decided_for(run.record, effect)
-            lines.append(line(label, " → ".join(rates), difference, decided))
+            ahead = version_ahead(run.record, effect)
+            lines.append(line(label, " → ".join(rates), difference, ahead))
     return Table(
         title=f"{'All sizes' if swept(runs) else 'Each run by itself'}; bold is significant",
         corner="Run",
@@ -177,8 +175,7 @@ def shown(runs: Sequence[Compared]) -> RenderableType:
     facts = differing(runs)
     parts: list[RenderableType] = [Text(headline(runs), style="bold"), Text("")]
     for run in runs:
-        verdict = Padding.indent(Text(run.headline), 3)
-        parts += [Text(f"{run.number}  {run.folder}"), verdict]
+        parts += [Text(f"{run.number}  {run.folder}"), Padding.indent(Text(run.headline), 3)]
     parts += [Text(""), Parted(_short(effects(runs))), Text("")]
     parts += [drawn(facts_table(runs, facts))] if facts else [Text(same(runs))]
     return Group(*parts, Text(""), *map(Text, sentences(runs)))
@@ -195,7 +192,7 @@ def page(runs: Sequence[Compared]) -> str:
     facts = differing(runs)
     panels: dict[str, list[Row]] = {
         title: [
-            (label, "", run.effect(condition) or run.absent(condition))
+            (label, run.effect(condition) or run.absent(condition))
             for label, run in zip(labels(runs), runs, strict=True)
         ]
         for condition, title in titles(runs).items()
@@ -206,10 +203,10 @@ def page(runs: Sequence[Compared]) -> str:
         "comparison.html.j2",
         headline=headline(runs),
         sentences=sentences(runs),
-        runs=runs,
-        panels=[Markup(panel(title, rows, axis)) for title, rows in panels.items()],
-        effects=Markup(html(effects(runs))),
-        facts=Markup(html(facts_table(runs, facts))) if facts else "",
+        runs=[(run, scenes_run(run.record), of_audit(run.record)) for run in runs],
+        panels=[panel(title, rows, axis) for title, rows in panels.items()],
+        effects=html(effects(runs)),
+        facts=html(facts_table(runs, facts)) if facts else "",
         same=same(runs),
         sizes=swept(runs),
     )

@@ -21,8 +21,8 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import check_mark, is_run, make_folder, write_text
 from faultpath.core.text import counted
 from faultpath.core.version import __version__
+from faultpath.report.escapes import unbroken, visible
 from faultpath.report.sentences import wording
-from faultpath.report.tables.escapes import unbroken, visible
 
 PAGE = b'<meta name="generator" content="faultpath '
 """Text in the head of every page."""
@@ -70,7 +70,9 @@ def write_pages(files: Mapping[str, str], folder: Path) -> list[Path]:
     elif not is_run(folder) and (
         others := [name for name in files if os.path.lexists(folder / name)]
     ):
-        raise UserError(f"{folder} holds {others[0]}, which is not of this run: give a new folder.")
+        raise UserError(
+            f"{folder} already holds {others[0]}, which this run did not write: give a new folder."
+        )
     make_folder(folder)
     for name, text in files.items():
         write_text(folder / name, text, folder)

@@ -1,12 +1,17 @@
-"""Questions of a build or a test, answered from a result and nothing else."""
+"""Questions of a build or a test, answered from a result, and what a build server reads."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, get_args
+from xml.etree import ElementTree
 
 from faultpath.analyses.model import SHARED, AuditResult, where
 from faultpath.core.errors import UserError
 from faultpath.core.text import capital, counted, unknown
-from faultpath.report.sentences import phrases
+from faultpath.report.audit_tables import markdown_table
+from faultpath.report.escapes import markdown, visible
+from faultpath.report.sentences import phrases, words
+from faultpath.report.sentences.answers import answers
 from faultpath.report.sentences.phrases import NO_RESULT, in_short, places
 from faultpath.report.sentences.wording import sentence
 
@@ -25,53 +30,102 @@ class Answer:
         return self.yes
 
     def __repr__(self) -> str:
-        """Return the answer and what it rests on."""
         return f"{'yes' if self.yes else 'no'}: {self.reason}"
 
 
-def found(record: AuditResult, what: str) -> Answer:
+def found(result: AuditResult, what: str) -> Answer:
     """Return whether a result holds what is named; `UserError` for what is none of `ASKS`.
 
     `reversal`: sharing the fault reverses the ranking. `repair-behind`: under some condition the
     baseline is significantly ahead. `undecided`: the primary contrast is neither significant nor
     shown to be small. `void`: pairs of trials count for nothing.
     """
-    if record.invalid and what in ASKS:
-        return Answer(True, NO_RESULT[record.invalid])
+    if result.invalid and what in ASKS:
+        return Answer(True, NO_RESULT[result.invalid])
     match what:
         case "reversal":
-            turned = [change for change in record.changes if change.turn == "reversal"]
-            text = " ".join(phrases.change(record, change) for change in turned)
+            turned = [change for change in result.changes if change.turn == "reversal"]
+            text = " ".join(phrases.change(result, change) for change in turned)
             return Answer(bool(turned), text or "no reversal is significant.")
         case "repair-behind":
-            behind = [effect for effect in record.effects if effect.sign < 0]
+            behind = [effect for effect in result.effects if effect.sign < 0]
             if not behind:
                 return Answer(False, "under no condition is the baseline significantly ahead.")
-            ahead = f"{record.question.baseline} succeeds more often."
+            ahead = f"{result.question.baseline} succeeds more often."
             return Answer(True, f"{capital(places(behind))}, {ahead}")
         case "undecided":
-            primary = record.facts.primary
-            main = record.effect(primary)
-            conclusive = main is not None and (main.sign != 0 or record.is_small(main))
-            return Answer(not conclusive, f"{capital(where(primary))}: {in_short(record, main)}.")
+            primary = result.facts.primary
+            main = result.effect(primary)
+            conclusive = main is not None and (main.sign != 0 or result.is_small(main))
+            return Answer(not conclusive, f"{capital(where(primary))}: {in_short(result, main)}.")
         case "void":
-            void = sum(effect.void for effect in record.effects)
-            lost = [name for name in record.titles if record.effect(name) is None]
-            sentences = [f"{counted(void, 'pair')} of trials {'is' if void == 1 else 'are'} void."]
+            missing = sum(effect.void for effect in result.effects)
+            lost = [name for name in result.titles if result.effect(name) is None]
+            verb = "is" if missing == 1 else "are"
+            sentences = [f"{counted(missing, 'pair')} of trials {verb} void."]
             sentences += [f"{phrases.no_pair(name)}." for name in lost]
-            return Answer(bool(void or lost), " ".join(sentences))
+            return Answer(bool(missing or lost), " ".join(sentences))
         case _:
             raise UserError(f"a result cannot be asked for that: {unknown('name', what, ASKS)}.")
 
 
-def holds_when_shared(record: AuditResult) -> Answer:
-    """Return whether the repair is significantly ahead under the shared fault.
-
-    Away from floor and ceiling, and not because the baseline's trials failed. `UserError` for a
-    result without a shared fault.
-    """
-    if SHARED not in record.titles:
+def holds_when_shared(result: AuditResult) -> Answer:
+    """Return whether the repair is significantly ahead under the shared fault, away from floor and
+    ceiling and not because the baseline's trials failed; `UserError` without a shared fault."""
+    if SHARED not in result.titles:
         raise UserError("the result has no shared fault, so nothing says whether the repair holds.")
-    effect = record.effect(SHARED)
-    text = sentence(f"{where(SHARED)}, {in_short(record, effect)}")
+    effect = result.effect(SHARED)
+    text = sentence(f"{where(SHARED)}, {in_short(result, effect)}")
     return Answer(effect is not None and effect.leads and effect.sign > 0, text)
+
+
+def junit(results: Sequence[AuditResult], asks: Sequence[str]) -> str:
+    """Return JUnit's XML: a suite for each result, a case for its trials and each of `asks`."""
+    root = ElementTree.Element("testsuites", name="faultpath")
+    for result in results:
+        question, text = result.question, words(result)
+        name = f"{question.repair} against {question.baseline}"
+        name += f" under {question.fault}" if question.fault else ""
+        failed = sum(count.failed for count in result.counts)
+        cases = {
+            "trials-ran": f"{failed} trials failed or are missing." if failed else "",
+            "result": text.headline if result.invalid else "",
+        }
+        for ask in asks:
+            answer = found(result, ask)
+            cases[f"no-{ask}"] = answer.reason if answer else ""
+        suite = ElementTree.SubElement(
+            root,
+            "testsuite",
+            name=visible(name),
+            tests=str(len(cases)),
+            failures=str(sum(map(bool, cases.values()))),
+        )
+        for case, failure in cases.items():
+            place = ElementTree.SubElement(suite, "testcase", classname="faultpath", name=case)
+            if failure:
+                wrong = ElementTree.SubElement(place, "failure", message=visible(failure))
+                wrong.text = visible(failure)
+        printed = "\n".join((text.headline, *text.sentences, *text.findings))
+        ElementTree.SubElement(suite, "system-out").text = visible(printed)
+    return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
+
+
+def summary(results: Sequence[AuditResult], asks: Sequence[str]) -> str:
+    """Return results as Markdown: a headline, what a build fails for, answers, tables."""
+    parts: list[str] = []
+    for result in results:
+        text = words(result)
+        parts.append(f"### {markdown(text.headline)}")
+        gates = {ask: found(result, ask) for ask in asks}
+        marks = [
+            f"- **{'fails' if answer else 'passes'}** `{name}`: {markdown(answer.reason)}"
+            for name, answer in gates.items()
+        ]
+        parts += ["\n".join(marks)] if marks else []
+        parts += [f"**{label}.** {markdown(answer)}" for label, answer in answers(result).items()]
+        if text.findings:
+            noted = "\n".join(f"- {markdown(finding)}" for finding in text.findings)
+            parts.append(f"**Found in the run.**\n\n{noted}")
+        parts.append(markdown_table(result))
+    return "\n\n".join(parts).rstrip() + "\n"

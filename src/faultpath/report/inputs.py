@@ -12,7 +12,7 @@ from faultpath.run.trials import Trials
 
 @dataclass(frozen=True)
 class ReportInput:
-    """One finished audit: the record, where it came from, and the trials behind it."""
+    """One finished audit: the result, where it came from, and the trials behind it."""
 
     record: AuditResult
     provenance: RunProvenance

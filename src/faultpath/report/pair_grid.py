@@ -4,6 +4,8 @@ from collections.abc import Collection, Mapping, Sequence
 from itertools import groupby
 from urllib.parse import quote
 
+from markupsafe import Markup
+
 from faultpath.analyses.pairs import Pair, PairKind
 from faultpath.report.svg import Point, Svg, text_width
 
@@ -27,16 +29,13 @@ def pair_grid(
     counts: Mapping[PairKind, int],
     names: Mapping[str, str],
     shown: Collection[tuple[str, int]] = (),
-) -> str:
+) -> Markup:
     """Return the grid of one condition: a block for each topology, a column for each scene.
 
     `counts` are of all pairs; without `pairs` they stand alone.
 
-    With several seeds a scene is a stack of cells, one a seed. Triangles that point up are scenes
-    that only the repair solved, pointing down only the baseline; a large disc is both, a small ring
-    neither, a cross in a red box a void pair. `names` says
-    what the system calls its ends. A cell whose scene and seed are among `shown` is a link to them
-    in the viewer.
+    With several seeds a scene is a stack of cells, one a seed. `names` says what the system calls
+    its ends. A cell whose scene and seed are among `shown` is a link to them in the viewer.
     """
     summary = ", ".join(f"{_short(k)} {n}" for k, n in counts.items() if n or k in _ALWAYS)
     ordered = sorted(pairs, key=lambda p: (p.topology, p.index, p.scene, p.seed))
@@ -69,9 +68,9 @@ def pair_grid(
     return svg.render()
 
 
-def pair_key(pairs: Sequence[Pair]) -> list[tuple[str, str]]:
+def pair_key(pairs: Sequence[Pair]) -> list[tuple[Markup, str]]:
     """Return the key of the grids: a small picture and its word, for each kind that occurs."""
-    entries: list[tuple[str, str]] = []
+    entries: list[tuple[Markup, str]] = []
     for kind in (k for k in PairKind if k in _ALWAYS or any(p.kind is k for p in pairs)):
         svg = Svg(_SIDE, _SIDE, _WORDS[kind])
         _sign(svg, kind, 0.5, 0.5, _SIDE - 1)

@@ -94,7 +94,7 @@ def first_plot(source: ReportInput, signals: Signals, plots: Sequence[Plot]) -> 
     throughout each trial says nothing of how it went.
     """
     plant = {s.name for s in source.system.interface.sources if s.provenance in _PLANT}
-    channels = {name: of.name for of in source.system.interface.channels for name in of.sources}
+    channels = {name: c.name for c in source.system.interface.channels for name in c.sources}
     taps = [
         tap
         for condition in source.record.conditions
@@ -107,12 +107,12 @@ def first_plot(source: ReportInput, signals: Signals, plots: Sequence[Plot]) -> 
         if plots[place].title == "position":
             return 0
         names = {name for (name, _), _ in plots[place].lines}
-        of = {channels.get(name, "") for name in names & plant & moving}
-        if not of:
+        shown = {channels.get(name, "") for name in names & plant & moving}
+        if not shown:
             return 4
-        if "" in of:
+        if "" in shown:
             return 1
-        return 3 if of <= faulted else 2
+        return 3 if shown <= faulted else 2
 
     return min(range(len(plots)), key=rank, default=0)
 

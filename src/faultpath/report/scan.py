@@ -1,48 +1,37 @@
 """A scan as tables, pictures, terminal and page; all numbers are the result's."""
 
+from math import inf
 from pathlib import Path
-
-from markupsafe import Markup
 
 from faultpath.analyses.scan.model import ScanError, ScannedVersion, ScanResult, SecondStage
 from faultpath.analyses.scan.sources import Candidate, Ranking
 from faultpath.core.text import counted
 from faultpath.report.frame import render, write_pages
 from faultpath.report.scan_pictures import letters, strip, triangle
-from faultpath.report.sentences import wording
+from faultpath.report.sentences import wording, words
 from faultpath.report.sentences.scan import named, of_pair, size
-from faultpath.report.sentences.words import words
-from faultpath.report.tables import Entry, Line, Table, line
-from faultpath.report.tables.html import html
-from faultpath.report.tables.markdown import blocks
+from faultpath.report.tables import Entry, Line, Table, html, line, markdown_blocks
 from faultpath.run.provenance import RunProvenance
 
 _MOST_PAIRS = 10
 """As many pairs have room in a terminal."""
 
 
-def tables(record: ScanResult) -> tuple[Table, ...]:
-    """Return the errors alone, their pairs where these are few, those of a source at several
-    readers, and the ranking."""
-    together = (_together(record),) if record.versions[0].together else ()
-    pairs = _pairs(record) if 0 < len(record.versions[0].pairs) <= _MOST_PAIRS else None
-    tables = _alone(record), pairs, *together, ranking_table(record.ranking)
-    return tuple(filter(None, tables))
+def tables(result: ScanResult, most_pairs: float = _MOST_PAIRS) -> tuple[Table, ...]:
+    """Return the errors alone, their pairs where these are not too many, those of a source at
+    several readers, and the ranking."""
+    version = result.versions[0]
+    pairs = _pairs(result) if 0 < len(version.pairs) <= most_pairs else None
+    together = _together(result) if version.together else None
+    return tuple(filter(None, (_alone(result), pairs, together, ranking_table(result.ranking))))
 
 
-def every_table(record: ScanResult) -> tuple[Table, ...]:
-    """Return these, and beside them the pairs that ran: too many for a terminal."""
-    first, *others = tables(record)
-    many = len(record.versions[0].pairs) > _MOST_PAIRS
-    return first, *((_pairs(record),) if many else ()), *others
-
-
-def _pairs(record: ScanResult) -> Table:
+def _pairs(result: ScanResult) -> Table:
     """Return success with each pair of errors that ran, beside each of them alone."""
     lines: list[Line] = []
-    for at, pair in enumerate(record.versions[0].pairs):
+    for at, pair in enumerate(result.versions[0].pairs):
         entries: list[Entry] = []
-        for version in record.versions:
+        for version in result.versions:
             one = version.pairs[at]
             p = one.covers_p if one.corrected_p is None else one.corrected_p
             rates = (one.none, one.first, one.second, one.both)
@@ -50,12 +39,12 @@ def _pairs(record: ScanResult) -> Table:
             shown = "not tested" if p is None else wording.p_value(p)
             listed = one.kind is not None
             entries.append(Entry(text=shown, detected=listed, aside="listed" * listed))
-        lines.append(line(" and ".join(named(record.errors[e]) for e in pair.errors), *entries))
+        lines.append(line(" and ".join(named(result.errors[e]) for e in pair.errors), *entries))
     return Table(
         name="every-pair",
         title="Success with pairs of errors, %",
         corner="Errors",
-        columns=_of_versions(record, "neither", "first", "second", "both", "p, Holm"),
+        columns=_of_versions(result, "neither", "first", "second", "both", "p, Holm"),
         lines=tuple(lines),
         notes=(
             "p: one-sided, that both together succeed more often than the worse one alone; tested "
@@ -64,16 +53,16 @@ def _pairs(record: ScanResult) -> Table:
     )
 
 
-def _alone(record: ScanResult) -> Table:
+def _alone(result: ScanResult) -> Table:
     """Return success with each error alone, in the first stage and in the second."""
-    versions = record.versions
+    versions = result.versions
     none = [
         entry
         for version in versions
         for entry in (_percent(version.first[0].none), _percent(_none(version)), "")
     ]
     lines = [line("no error", *none)]
-    places = {error.text: place for place, error in enumerate(record.errors)}
+    places = {error.text: place for place, error in enumerate(result.errors)}
     tried = sorted((first.error for first in versions[0].first), key=_in_order)
     for error in tried:
         entries: list[Entry] = []
@@ -87,11 +76,11 @@ def _alone(record: ScanResult) -> Table:
         name="errors",
         title="Success with each error alone, %",
         corner="Error",
-        columns=_of_versions(record, "first stage", "second stage", "p, Holm"),
+        columns=_of_versions(result, "first stage", "second stage", "p, Holm"),
         lines=tuple(lines),
         notes=(
-            f"The first stage has {counted(record.scenes[0], 'scene')}, the second "
-            f"{record.scenes[1]} others. p: one-sided, that the error costs success or, where it "
+            f"The first stage has {counted(result.scenes[0], 'scene')}, the second "
+            f"{result.scenes[1]} others. p: one-sided, that the error costs success or, where it "
             "is said to raise it, that it does (below 0.025).",
         ),
     )
@@ -119,23 +108,23 @@ def _percent(rate: float | None) -> str:
     return "not run" if rate is None else f"{rate:.0f}"
 
 
-def _of_versions(record: ScanResult, *columns: str) -> tuple[str, ...]:
+def _of_versions(result: ScanResult, *columns: str) -> tuple[str, ...]:
     """Return columns for each version, under its name where there are two."""
-    if len(record.versions) == 1:
+    if len(result.versions) == 1:
         return columns
-    return tuple(f"{of.variant}: {column}" for of in record.versions for column in columns)
+    return tuple(f"{of.variant}: {column}" for of in result.versions for column in columns)
 
 
-def _together(record: ScanResult) -> Table:
+def _together(result: ScanResult) -> Table:
     """Return success with a source wrong at several readers at once."""
     lines: list[Line] = []
-    for at, together in enumerate(record.versions[0].together):
-        errors = [record.errors[place] for place in together.errors]
+    for at, together in enumerate(result.versions[0].together):
+        errors = [result.errors[place] for place in together.errors]
         sizes = " and ".join(dict.fromkeys(map(size, errors)))
         where = f"all but {together.left_out}" if together.left_out else "all"
         rates = [
             _percent(rate)
-            for version in record.versions
+            for version in result.versions
             for rate in (version.together[at].none, version.together[at].success)
         ]
         lines.append(line(f"{wording.in_words(errors[0].source)} {sizes}", where, *rates))
@@ -143,7 +132,7 @@ def _together(record: ScanResult) -> Table:
         name="together",
         title="Success with one source wrong at several readers, %",
         corner="Source",
-        columns=("readers", *_of_versions(record, "no error", "wrong there")),
+        columns=("readers", *_of_versions(result, "no error", "wrong there")),
         words=("readers",),
         lines=tuple(lines),
         notes=("All readers is how deployment has an error of the source. Not tested.",),
@@ -187,45 +176,44 @@ def _ranking_notes(ranking: Ranking) -> tuple[str, ...]:
     )
 
 
-def write_scan(record: ScanResult, provenance: RunProvenance, folder: Path) -> list[Path]:
+def write_scan(result: ScanResult, provenance: RunProvenance, folder: Path) -> list[Path]:
     """Write `report.html`, `scan.svg`, `scan-2.svg` of a repair, and `table.md`; return their
     paths."""
-    pages = {"report.html": page(record, provenance)}
-    for number, version in enumerate(record.versions, 1):
+    pages = {"report.html": page(result, provenance)}
+    for number, version in enumerate(result.versions, 1):
         if version.singles:
             name = "scan.svg" if number == 1 else f"scan-{number}.svg"
-            pages[name] = triangle(record, version).render(standalone=True) + "\n"
-    pages["table.md"] = blocks(every_table(record)) + "\n"
+            pages[name] = triangle(result, version).render(standalone=True) + "\n"
+    pages["table.md"] = markdown_blocks(tables(result, inf)) + "\n"
     return write_pages(pages, folder)
 
 
-def page(record: ScanResult, provenance: RunProvenance) -> str:
+def page(result: ScanResult, provenance: RunProvenance) -> str:
     """Return the scan as one page that opens without a network."""
-    letter = [letters(version) for version in record.versions]
+    letter = [letters(version) for version in result.versions]
     versions = [
         {
             "name": version.variant,
-            "triangle": Markup(triangle(record, version).render()) if version.singles else "",
+            "triangle": triangle(result, version).render() if version.singles else "",
             "strips": [
                 {
                     "letters": " and ".join(names[place] for place in pair.errors),
-                    "words": of_pair(record, pair),
-                    "picture": Markup(strip(record, version, pair).render()),
+                    "words": of_pair(result, pair),
+                    "picture": strip(result, version, pair).render(),
                 }
                 for pair in version.listed
             ],
         }
-        for version, names in zip(record.versions, letter, strict=True)
+        for version, names in zip(result.versions, letter, strict=True)
     ]
-    every = every_table(record)
     return render(
         "scan.html.j2",
-        record=record,
-        words=words(record),
-        question=record.question,
-        facts=record.facts,
+        result=result,
+        words=words(result),
+        question=result.question,
+        facts=result.facts,
         provenance=provenance,
-        n_trials=record.trials,
+        n_trials=result.trials,
         versions=versions,
-        tables=[(table, Markup(html(table, caption=False))) for table in every],
+        tables=[(table, html(table, caption=False)) for table in tables(result, inf)],
     )

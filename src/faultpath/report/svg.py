@@ -8,7 +8,9 @@ from functools import cache
 from hashlib import blake2b
 from importlib import resources
 
-from faultpath.report.tables.escapes import html as escape
+from markupsafe import Markup
+
+from faultpath.report.escapes import html as escape
 
 Point = tuple[float, float]
 
@@ -151,8 +153,9 @@ class Svg:
         )
         return f"url(#{key})"
 
-    def render(self, standalone: bool = False) -> str:
-        """Return the markup; `standalone` carries its own style and opens as a file."""
+    def render(self, standalone: bool = False) -> Markup:
+        """Return the markup, which is safe on a page; `standalone` carries its own style and opens
+        as a file."""
         style, margin = "", 0
         if standalone:
             margin = _FILE_MARGIN
@@ -170,7 +173,7 @@ class Svg:
             f'width="{width}" height="{height}">'
             f'<title id="{self.uid}-t">{escape(self._title)}</title>{described}{style}'
         )
-        return head + "".join(self._parts) + "</svg>"
+        return Markup(head + "".join(self._parts) + "</svg>")
 
 
 def _tip(text: str) -> str:
@@ -225,6 +228,35 @@ def covering(values: Iterable[float], margin: float = 0.06, least: float = 1.0) 
         low, high = middle - 0.5 * least, middle + 0.5 * least
     pad = margin * (high - low)
     return Axis(low - pad, high + pad)
+
+
+SHADES = ((30.0, "0.62"), (10.0, "0.42"), (0.0, "0.22"))
+"""From which difference on, pp, an area has which opacity."""
+
+
+def shade(difference: float) -> str:
+    """Return the opacity of an area that shows a difference, pp."""
+    return next(opacity for least, opacity in SHADES if abs(difference) >= least)
+
+
+def draw_scale(svg: Svg, width: float, labels: Sequence[str], hatch: str = "") -> None:
+    """Draw a piece for each shade of the baseline, hatched, and of the repair, with labels between
+    the pieces."""
+    shades = [opacity for _, opacity in SHADES]
+    for column, opacity in enumerate((*shades, *reversed(shades))):
+        side = "baseline-only" if column < len(shades) else "repair-only"
+        piece = f"M{number(column * width)} 38h{number(width)}v12h-{number(width)}Z"
+        svg.path(piece, side, fill_opacity=opacity)
+        if hatch and column < len(shades):
+            svg.path(piece, "", fill=hatch, fill_opacity="0.5")
+    for column, label in enumerate(labels, 1):
+        svg.text(column * width, 63, label, "small soft", "middle")
+
+
+def draw_band(svg: Svg, points: Iterable[tuple[float, float, float]], cls: str = "fan") -> None:
+    """Fill between a lower and an upper line, given as `(x, lower, upper)` in pixels."""
+    x, lower, upper = zip(*points, strict=True)
+    svg.polygon([*zip(x, upper, strict=True), *reversed([*zip(x, lower, strict=True)])], cls)
 
 
 def tick_label(value: float) -> str:

@@ -5,6 +5,8 @@ The delivery log says which taps had the fault in force, and the variants say wh
 
 from dataclasses import dataclass
 
+from markupsafe import Markup
+
 from faultpath.analyses.model import CORRECT
 from faultpath.core.text import series
 from faultpath.interface import module_of
@@ -64,10 +66,10 @@ class Fork:
 
 def forks(source: ReportInput) -> tuple[Fork, ...]:
     """Return every condition of the fault, isolated ones first; none where no tap is known."""
-    record, question = source.record, source.record.question
+    result, question = source.record, source.record.question
     faulted = (
         tap.channel
-        for condition in record.conditions
+        for condition in result.conditions
         for tap in (*condition.faulted, *condition.baseline_faulted)
     )
     names = tuple(dict.fromkeys([fault.channel for fault in source.record.facts.faults] or faulted))
@@ -83,7 +85,7 @@ def forks(source: ReportInput) -> tuple[Fork, ...]:
     every = frozenset[Tap]().union(*reads)
     modules = sorted({module_of(reader) for _, reader in every})
     branches: list[Fork] = []
-    for condition in record.conditions if every else ():
+    for condition in result.conditions if every else ():
         if condition.name == CORRECT:
             continue
         variants: list[tuple[str, str, tuple[Reader, ...]]] = []
@@ -105,7 +107,7 @@ def forks(source: ReportInput) -> tuple[Fork, ...]:
     return tuple(branches)
 
 
-def fork_panel(fork: Fork) -> str:
+def fork_panel(fork: Fork) -> Markup:
     """Return the picture of a condition."""
     description = " ".join(
         f"{role.capitalize()} {name}: "

@@ -17,8 +17,7 @@ from faultpath.analyses.parting import Heard, parting
 from faultpath.report.inputs import ReportInput
 from faultpath.report.plots import Plot, first_plot, plots_of
 from faultpath.report.sentences import wording
-from faultpath.report.sentences.parting import DIFFERS, ending
-from faultpath.report.sentences.parting import parted as said
+from faultpath.report.sentences.parting import DIFFERS, ending, parted
 from faultpath.run.store.signals import DRAWN, IN_FORCE, Signal, Signals
 from faultpath.run.store.tables import Trace, TrialAddress, traces_of
 from faultpath.system.outcome import Outcome
@@ -100,12 +99,12 @@ def captions(pairs: Sequence[Pair], sampled: bool = False) -> dict[tuple[str, in
     whether it is typical of them."""
     groups = alike(pairs)
     scenes, seeds = ({at[part] for at in groups} for part in (0, 1))
-    of = f"{len(scenes)} {'sampled scenes' if sampled else 'scenes'}"
+    total = f"{len(scenes)} {'sampled scenes' if sampled else 'scenes'}"
     if len(seeds) > 1:
-        of = f"{len(groups)} ({of}, {len(seeds)} seeds)"
+        total = f"{len(groups)} ({total}, {len(seeds)} seeds)"
     typical = " It is a typical one: its trials end apart at the median time of these."
     return {
-        at: f"{count} of {of} {'goes' if count == 1 else 'go'} like this one: the same versions "
+        at: f"{count} of {total} {'goes' if count == 1 else 'go'} like this one: the same versions "
         f"succeed under each condition.{typical if is_typical else ''}"
         for at, (count, is_typical) in groups.items()
     }
@@ -154,15 +153,15 @@ def _space(source: ReportInput, flat: bool, tracked: bool) -> str:
     return "none" if not tracked else "line" if flat else "space"
 
 
-def _first_condition(record: AuditResult, pairs: Mapping[str, Pair]) -> str:
+def _first_condition(result: AuditResult, pairs: Mapping[str, Pair]) -> str:
     """Return the condition marked first: one on which the first scene shows what is significant."""
-    signs = {effect.condition: effect.sign for effect in record.effects if effect.leads}
+    signs = {effect.condition: effect.sign for effect in result.effects if effect.leads}
     apart = [
         condition
         for condition, pair in pairs.items()
         if pair.sign and signs.get(condition) == pair.sign
     ]
-    primary = record.facts.primary or SHARED
+    primary = result.facts.primary or SHARED
     return apart[0] if apart and primary not in apart else primary
 
 
@@ -202,8 +201,8 @@ class _Trials:
     def parting(self, pair: Pair) -> dict[str, Any] | None:
         """Return where the two trials part, in words and as steps; `None` where that was not
         recorded of both."""
-        record, signals = self.source.record, self.source.signals
-        names = record.question.baseline, record.question.repair
+        result, signals = self.source.record, self.source.signals
+        names = result.question.baseline, result.question.repair
         addresses = [TrialAddress(n, pair.condition, pair.seed, pair.scene) for n in names]
         if not all(signals.get(at) for at in addresses):
             return None
@@ -211,10 +210,10 @@ class _Trials:
             Heard(at, outcome, signals[at])
             for at, outcome in zip(addresses, (pair.baseline, pair.repair), strict=True)
         )
-        parted = parting(self.source.system, one, other)
-        marks = [(first.step, DIFFERS[kind]) for kind, first in parted.first.items()]
-        marks += ending(parted, self.source.system.control_dt_s)
-        return {"said": said(record.facts, parted), "marks": marks}
+        differences = parting(self.source.system, one, other)
+        marks = [(first.step, DIFFERS[kind]) for kind, first in differences.first.items()]
+        marks += ending(differences, self.source.system.control_dt_s)
+        return {"said": parted(result.facts, differences), "marks": marks}
 
     def _put(self, metres: NDArray[np.float32]) -> int:
         """Put coordinates into `series` as whole centimetres, and return where they begin."""

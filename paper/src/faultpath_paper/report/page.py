@@ -6,9 +6,8 @@ from markupsafe import Markup
 
 from faultpath.report.frame import render
 from faultpath.report.sentences import wording
-from faultpath.report.svg import Axis, Svg, draw_axes, text_width, tick_label
-from faultpath.report.tables import Table
-from faultpath.report.tables.html import html
+from faultpath.report.svg import Axis, Svg, draw_axes, draw_band, text_width, tick_label
+from faultpath.report.tables import Table, html
 from faultpath.run.provenance import RunProvenance
 from faultpath_paper.answers import Point, Reproduction, Series, Sweep
 from faultpath_paper.central import QUESTION
@@ -19,7 +18,7 @@ LOOKS = 4
 _KEY_ROW, _SAMPLE = 20.0, 28.0
 
 
-def sweep_plot(sweep: Sweep) -> str:
+def sweep_plot(sweep: Sweep) -> Markup:
     """Return the lines of a sweep with their bands."""
     width, height = 560.0, 250.0
     top = _KEY_ROW + 34
@@ -61,8 +60,7 @@ def _axes(points: Sequence[Point]) -> tuple[Axis, Axis]:
 def _band(svg: Svg, line: Series, x: Axis, y: Axis, look: str) -> None:
     ends = [(p.x, p.low, p.high) for p in line.points if p.low is not None and p.high is not None]
     if len(ends) > 1:
-        upper = [(x(at), y(high)) for at, _, high in ends]
-        svg.polygon([*upper, *((x(at), y(low)) for at, low, _ in reversed(ends))], look)
+        draw_band(svg, ((x(at), y(low), y(high)) for at, low, high in ends), look)
 
 
 def _mark(svg: Svg, x: float, y: float, look: int, tip: str) -> None:
@@ -110,12 +108,12 @@ def reproduction_page(
             "answer": central[0],
             "question": QUESTION,
             "detail": central[1],
-            "table": Markup(html(central[2])),
+            "table": html(central[2]),
             "notes": (*central[2].legend(), *central[2].notes),
         },
-        tables=[(table, Markup(html(table, "beside", caption=False))) for table in record.tables],
+        tables=[(table, html(table, "beside", caption=False)) for table in record.tables],
         footnotes={note: number for number, note in enumerate(shared, 1)},
-        sweeps=[{"sweep": sweep, "picture": Markup(sweep_plot(sweep))} for sweep in record.figures],
+        sweeps=[{"sweep": sweep, "picture": sweep_plot(sweep)} for sweep in record.figures],
         provenance=provenance,
         w=wording,
         words=words,

@@ -8,12 +8,10 @@ from rich.padding import Padding
 from rich.text import Text
 
 from faultpath.core.text import counted
+from faultpath.report.escapes import markdown
 from faultpath.report.sentences import wording
-from faultpath.report.tables import MISSING, Entry, Table, line
-from faultpath.report.tables.escapes import markdown
-from faultpath.report.tables.markdown import grid
-from faultpath.report.tables.model import Tone
-from faultpath.report.tables.terminal import STYLES
+from faultpath.report.tables import MISSING, Entry, Table, Tone, line, markdown_grid
+from faultpath.report.terminal import STYLES
 from faultpath_paper.answers import Answer, ClaimVerdict, Ledger, Size
 from faultpath_paper.report import words
 
@@ -92,7 +90,7 @@ def ledger_markdown(ledger: Ledger, profile: str) -> str:
         for entries in [_entries(claim)]
     )
     texts = ("Kind", "Result", "Beside the paper", "The paper", "What is claimed")
-    table = grid(Table(corner="Claim", columns=_PRINTED, lines=tuple(lines), words=texts))
+    table = markdown_grid(Table(corner="Claim", columns=_PRINTED, lines=tuple(lines), words=texts))
     sizes = [markdown(f"{words.sizes(ledger)} {_FARTHEST}")] if words.sizes(ledger) else []
     head = f"{words.headline(ledger, profile)}.", markdown(f"{_about(ledger)}.")
     return "\n\n".join([*head, table, *sizes]) + "\n"

@@ -4,8 +4,8 @@ import re
 from collections.abc import Sequence
 
 from faultpath.core.text import counted
+from faultpath.report.escapes import unbroken
 from faultpath.report.sentences import wording
-from faultpath.report.tables.escapes import unbroken
 from faultpath_paper.answers import Answer, ClaimVerdict, Ledger, Size, StatementPart
 
 QUICK = "quick"

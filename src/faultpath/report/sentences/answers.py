@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from faultpath.analyses.model import CORRECT, SHARED, AuditResult, Invalid, where
 from faultpath.core.text import capital, counted, series
-from faultpath.report.sentences import phrases, shares
+from faultpath.report.sentences import phrases
 from faultpath.report.sentences.headline import reversed_at
 from faultpath.report.sentences.phrases import margin, places
 from faultpath.report.sentences.wording import detectable, signed
@@ -27,92 +27,92 @@ _PAIRED = {
 }
 
 
-def sentences(record: AuditResult) -> tuple[str, ...]:
-    """Return all that a record says, a sentence or two each: changes first, then the answers."""
-    changes = [phrases.change(record, change) for change in record.changes if not record.invalid]
-    said = {*_unchanged(record)}  # change by change, above
-    return (*changes, *(s for s in sum(_answers(record).values(), list[str]()) if s not in said))
+def sentences(result: AuditResult) -> tuple[str, ...]:
+    """Return all that a result says, a sentence or two each: changes first, then the answers."""
+    changes = [phrases.change(result, change) for change in result.changes if not result.invalid]
+    above = {*_unchanged(result)}  # change by change
+    return (*changes, *(s for s in sum(_answers(result).values(), list[str]()) if s not in above))
 
 
-def answers(record: AuditResult) -> dict[str, str]:
+def answers(result: AuditResult) -> dict[str, str]:
     """Return `What follows`, `How sure` and `Left open`, each with a sentence or a few.
 
     With too few scenes nothing follows, and only the other two are there.
     """
-    return {label: " ".join(sentences) for label, sentences in _answers(record).items()}
+    return {label: " ".join(sentences) for label, sentences in _answers(result).items()}
 
 
-def _answers(record: AuditResult) -> dict[str, list[str]]:
-    question, significant = record.question, any(effect.sign for effect in record.effects)
-    least = record.testing.scenes_needed
-    if record.invalid:
-        return {"Left open": [_WHY_NO_RESULT[record.invalid]]}
-    sure = [*_reach(record), *_hardly_acted(record)]
-    if record.few:
+def _answers(result: AuditResult) -> dict[str, list[str]]:
+    question, significant = result.question, any(effect.sign for effect in result.effects)
+    least = result.testing.scenes_needed
+    if result.invalid:
+        return {"Left open": [_WHY_NO_RESULT[result.invalid]]}
+    sure = [*_reach(result), *_hardly_acted(result)]
+    if result.few:
         few = (
-            f"Too few scenes: {counted(record.scenes, 'scene')} compared, and no difference can be "
+            f"Too few scenes: {counted(result.scenes, 'scene')} compared, and no difference can be "
             f"significant with fewer than {least}. The numbers hold for them alone."
         )
         return {"Left open": [few], "How sure": sure}
-    if record.earlier:
-        sure.append(phrases.earlier_analyses(record))
-    elif significant and not record.facts.judged and question.generalise == "scenes":
+    if result.earlier:
+        sure.append(phrases.earlier_analyses(result))
+    elif significant and not result.facts.judged and question.generalise == "scenes":
         # Of other tools' trials it is said with how they were paired.
         sure.append(
             "If both versions were equally good, at most 5 % of audits would report any difference."
         )
-    follows = {"What follows": list(_follows(record)), "How sure": sure}
-    left_open = {"Left open": list(_left_open(record))}
+    follows = {"What follows": list(_follows(result)), "How sure": sure}
+    left_open = {"Left open": list(_left_open(result))}
     # Where nothing is significant, what was not seen is the result.
     return {**follows, **left_open} if significant else {**left_open, **follows}
 
 
-def _follows(record: AuditResult) -> Iterator[str]:
-    tested = [effect for effect in record.effects if effect.acted]
+def _follows(result: AuditResult) -> Iterator[str]:
+    tested = [effect for effect in result.effects if effect.acted]
     leading = [effect for effect in tested if effect.leads]
     disagree = {effect.sign for effect in leading} == {1, -1}
     if not leading:
         if uneven := [effect for effect in tested if effect.sign and effect.uneven]:
-            failed = phrases.failed_more(record, uneven[0])
+            failed = phrases.failed_more(result, uneven[0])
             yield f"No choice can rest on what is significant: {failed}."
         elif any(effect.sign for effect in tested):
             yield "What is significant lies at the floor or ceiling: no choice can rest on it."
-        elif tested and all(record.is_small(effect) for effect in tested):
-            yield f"Neither is to be preferred: each difference is below {margin(record)}."
+        elif tested and all(result.is_small(effect) for effect in tested):
+            yield f"Neither is to be preferred: each difference is below {margin(result)}."
         else:
-            yield _unknown(record)
-    turned = reversed_at(record)
-    if turned:
-        one, other = record.winner(turned[0].sign), record.winner(-turned[0].sign)
+            yield _unknown(result)
+    reversals = reversed_at(result)
+    if reversals:
+        one, other = result.winner(reversals[0].sign), result.winner(-reversals[0].sign)
         yield (
-            f"Ask which fault your system will meet: {places(turned)}, {one} succeeds more often; "
-            f"where the modules share it, {other} succeeds more often."
+            f"Ask which fault your system will meet: {places(reversals)}, {one} succeeds more "
+            f"often; where the modules share it, {other} succeeds more often."
         )
         leading = [effect for effect in leading if effect.condition == CORRECT]
     for sign in (1, -1):
         if at := [effect for effect in leading if effect.sign == sign]:
-            yield f"{capital(places(at))}, {record.winner(sign)} succeeds more often."
+            yield f"{capital(places(at))}, {result.winner(sign)} succeeds more often."
     alone = any(effect.condition not in (CORRECT, SHARED) for effect in leading)
     for effect in tested if alone else ():
         if effect.condition == SHARED and not (effect.sign or effect.extreme or effect.unsettled):
-            less = f", and it is smaller than {margin(record)}" if record.is_small(effect) else ""
+            less = f", and it is smaller than {margin(result)}" if result.is_small(effect) else ""
             yield f"When the fault is shared, no difference is seen{less}."
-    if modules := [change.isolated for change in record.changes if change.turn == "interaction"]:
+    if modules := [change.isolated for change in result.changes if change.turn == "interaction"]:
         yield (
             f"A fault at the {' or the '.join(modules)} alone does not stand for the shared one: "
             "the difference between the two versions changes."
         )
-    if disagree and not turned:
+    if disagree and not reversals:
         yield "Which is better depends on which fault occurs, and how often."
-    for result in record.break_even if disagree else ():
-        if result.condition == record.facts.primary and result.ahead:
-            place, words = where(result.condition), shares.ahead(record.question, result)
+    for share in result.break_even if disagree else ():
+        if share.condition == result.facts.primary and share.ahead:
+            place, words = where(share.condition), phrases.ahead(result.question, share)
             yield f"Depending on how often the fault occurs, {place}: {words}."
 
 
-def _unknown(record: AuditResult) -> str:
+def _unknown(result: AuditResult) -> str:
     """Say that no choice follows, and which differences the primary contrast leaves possible."""
-    main = record.effect(record.facts.primary)
+    main = result.effect(result.facts.primary)
     text = "Not enough is known to prefer either"
     if main is None or not main.acted or main.low is None or main.high is None:
         return f"{text}."
@@ -122,10 +122,10 @@ def _unknown(record: AuditResult) -> str:
     return f"{text}: {where(main.condition)}, any difference from {low} to {high} pp is possible."
 
 
-def _reach(record: AuditResult) -> Iterator[str]:
+def _reach(result: AuditResult) -> Iterator[str]:
     """Say how far the numbers reach, which seeds repeat, and how a sequential audit stopped."""
-    question, facts = record.question, record.facts
-    holds = "The intervals hold" if record.few else "What is significant holds"
+    question, facts = result.question, result.facts
+    holds = "The intervals hold" if result.few else "What is significant holds"
     conditional = facts.trained and question.generalise == "scenes"
     anew = "; models trained anew may differ" if conditional else ""
     yield f"{holds} for {phrases.estimand(question, facts)}{anew}."
@@ -137,21 +137,21 @@ def _reach(record: AuditResult) -> Iterator[str]:
             "tools do not say whether it was."
         )
     run = len(facts.seeds)
-    yield from phrases.for_trainings(record)
-    if run > 1 and facts.unit == "scene" and record.effects and len(record.effects[0].won) == 1:
+    yield from phrases.for_trainings(result)
+    if run > 1 and facts.unit == "scene" and result.effects and len(result.effects[0].won) == 1:
         yield f"All {run} seeds gave the same outcome in every trial: together they count as one."
-    yield from _stopped(record)
+    yield from _stopped(result)
 
 
-def _hardly_acted(record: AuditResult) -> Iterator[str]:
+def _hardly_acted(result: AuditResult) -> Iterator[str]:
     """Name the versions in which the fault changed nothing in most of the trials."""
-    acted = {effect.condition for effect in record.effects if effect.acted}
+    acted = {effect.condition for effect in result.effects if effect.acted}
     faulted = {
         condition.name: (condition.baseline_readers, condition.readers)
-        for condition in record.conditions
+        for condition in result.conditions
     }
-    for count in record.counts:
-        readers = faulted[count.condition][count.variant == record.question.repair]
+    for count in result.counts:
+        readers = faulted[count.condition][count.variant == result.question.repair]
         if count.condition in acted and readers and 2 * count.altered_trials < count.trials:
             yield (
                 f"{capital(where(count.condition))}, the fault changed something in only "
@@ -159,19 +159,19 @@ def _hardly_acted(record: AuditResult) -> Iterator[str]:
             )
 
 
-def _stopped(record: AuditResult) -> Iterator[str]:
+def _stopped(result: AuditResult) -> Iterator[str]:
     """Say when a sequential audit stopped, why, and what that means for its numbers."""
-    stopped, question, facts = record.stopped, record.question, record.facts
+    stopped, question, facts = result.stopped, result.question, result.facts
     if stopped is None or facts.order is None:
         return
     whole = stopped.scenes == facts.n_scenes
     because = "but" if not stopped.reached else "and" if whole else "because"
     why = f"the primary contrast was {'' if stopped.reached else 'not '}significant"
     if question.stop_when == "all-decided":
-        also = f" or smaller than {margin(record)}" if question.margin_pp else ""
+        also = f" or smaller than {margin(result)}" if question.margin_pp else ""
         why = f"{'every' if stopped.reached else 'not every'} effect was significant{also}"
-    elif record.facts.primary in stopped.small:
-        why = f"the primary contrast was shown to be smaller than {margin(record)}"
+    elif result.facts.primary in stopped.small:
+        why = f"the primary contrast was shown to be smaller than {margin(result)}"
     took = f"it {'stopped after' if stopped.reached else 'took'} {counted(stopped.scenes, 'scene')}"
     took += f" of at most {facts.n_scenes}"
     if whole:
@@ -186,14 +186,14 @@ def _stopped(record: AuditResult) -> Iterator[str]:
         yield "A difference with which an audit stops is on average further from 0 than the truth."
 
 
-def _left_open(record: AuditResult) -> Iterator[str]:
-    if idle := [where(effect.condition) for effect in record.effects if not effect.acted]:
+def _left_open(result: AuditResult) -> Iterator[str]:
+    if idle := [where(effect.condition) for effect in result.effects if not effect.acted]:
         yield f"The fault never acted {series(idle)}: nothing was tested there."
-    yield from phrases.in_trials_that_ran(record)
-    yield from _insignificant(record)
-    yield from phrases.not_standing(record)
-    yield from _unchanged(record)
-    if record.facts.judged:
+    yield from phrases.in_trials_that_ran(result)
+    yield from _insignificant(result)
+    yield from phrases.not_standing(result)
+    yield from _unchanged(result)
+    if result.facts.judged:
         yield "Other scenes and other conditions are not among the results."
     else:
         yield (
@@ -201,18 +201,18 @@ def _left_open(record: AuditResult) -> Iterator[str]:
         )
 
 
-def _unchanged(record: AuditResult) -> Iterator[str]:
-    if same := [e.isolated for e in record.changes if e.turn == "none" and not e.unsettled]:
+def _unchanged(result: AuditResult) -> Iterator[str]:
+    if same := [e.isolated for e in result.changes if e.turn == "none" and not e.unsettled]:
         at = " or the ".join(same)
         yield f"No change from the fault at the {at} alone to the shared fault is significant."
 
 
-def _insignificant(record: AuditResult) -> Iterator[str]:
+def _insignificant(result: AuditResult) -> Iterator[str]:
     """Say where no difference is significant, and how large a one 8 of 10 audits would find."""
     sizes: dict[str, str] = {}
     extreme: dict[str, list[str]] = {}
-    for effect in record.effects:
-        if not effect.acted or effect.sign or effect.unsettled or record.is_small(effect):
+    for effect in result.effects:
+        if not effect.acted or effect.sign or effect.unsettled or result.is_small(effect):
             continue
         if effect.extreme:
             extreme.setdefault(effect.extreme, []).append(where(effect.condition))
@@ -231,14 +231,14 @@ def _insignificant(record: AuditResult) -> Iterator[str]:
     yield f"{text}."
 
 
-def would_change(record: AuditResult) -> Iterator[str]:
+def would_change(result: AuditResult) -> Iterator[str]:
     """Say what would change the result."""
-    if record.invalid:
+    if result.invalid:
         yield "Trials that repeat and are pairs: see the remarks on what differed."
         return
-    stopped, tested = record.stopped, [effect for effect in record.effects if effect.acted]
-    judged = record.facts.judged
-    if stopped and not all(effect.sign for effect in record.effects):
+    stopped, tested = result.stopped, [effect for effect in result.effects if effect.acted]
+    judged = result.facts.judged
+    if stopped and not all(effect.sign for effect in result.effects):
         yield (
             "More scenes: --stop-when all-decided goes on until every effect is significant or "
             "shown to be small."
@@ -246,16 +246,16 @@ def would_change(record: AuditResult) -> Iterator[str]:
             else "More scenes: a larger --scenes goes on with those of the same order, and what is "
             "said then holds as well."
         )
-    if record.few:
-        least = record.testing.scenes_needed
+    if result.few:
+        least = result.testing.scenes_needed
         yield f"More scenes: {least} at least, and more for all but a clear winner."
-    if len(tested) < len(record.effects):
+    if len(tested) < len(result.effects):
         yield "A fault that acts: an onset before the trial ends, a size that changes what is read."
     if any(effect.extreme == "floor" for effect in tested):
         yield "Easier scenes or a smaller fault: where both fail, a difference can hardly show."
     if any(effect.extreme == "ceiling" for effect in tested):
         yield "Harder scenes or a larger fault: where both succeed, a difference can hardly show."
-    if not record.few and any(e.least_pp and not e.sign for e in tested):
+    if not result.few and any(e.least_pp and not e.sign for e in tested):
         instead = "" if judged else ", or --stop-when, which allows for several analyses"
         yield (
             f"Fresh scenes, which no audit has used, and more of them{instead}: they find "

@@ -1,4 +1,4 @@
-"""What was found in the trials of a result, in words: a reader has to know it."""
+"""Findings in the trials of a result, in words: a reader has to know them."""
 
 from collections.abc import Iterator
 
@@ -22,14 +22,14 @@ from faultpath.run.findings import (
 )
 
 
-def of_audit(record: AuditResult) -> tuple[str, ...]:
+def of_audit(result: AuditResult) -> tuple[str, ...]:
     """Return all that was found: what puts all of it in doubt first, then what is missing."""
     return (
-        *([phrases.earlier_analyses(record)] if record.earlier else ()),
-        *map(describe, record.findings),
-        *_without_pairs(record),
-        *_failed_trials(record),
-        *_partly_measured(record),
+        *([phrases.earlier_analyses(result)] if result.earlier else ()),
+        *map(describe, result.findings),
+        *_without_pairs(result),
+        *_failed_trials(result),
+        *_partly_measured(result),
     )
 
 
@@ -101,23 +101,23 @@ def _recheck(finding: Recheck) -> str:
     )
 
 
-def _without_pairs(record: AuditResult) -> Iterator[str]:
-    for condition in record.titles:
-        if record.effect(condition) is None:
+def _without_pairs(result: AuditResult) -> Iterator[str]:
+    for condition in result.titles:
+        if result.effect(condition) is None:
             yield f"{phrases.no_pair(condition)}: the table shows what failed."
 
 
-def _failed_trials(record: AuditResult) -> Iterator[str]:
+def _failed_trials(result: AuditResult) -> Iterator[str]:
     """Say by version and condition how many trials failed, and how far that could matter."""
-    question = record.question
-    for effect in record.effects:
+    question = result.question
+    for effect in result.effects:
         missing = effect.missing
         if missing is None or missing.against_pp is None or missing.favour_pp is None:
             continue
         if not (missing.repair or missing.baseline or missing.unsettled):
             continue
         lost = "failed"
-        if record.facts.judged:
+        if result.facts.judged:
             lost += " or is missing" if missing.repair == 1 else " or are missing"
         yield (
             f"{capital(where(effect.condition))}, {counted(missing.repair, 'trial')} of "
@@ -127,14 +127,14 @@ def _failed_trials(record: AuditResult) -> Iterator[str]:
         )
 
 
-def _partly_measured(record: AuditResult) -> Iterator[str]:
+def _partly_measured(result: AuditResult) -> Iterator[str]:
     """Say of which metrics not every trial has a value."""
-    by_condition = {secondary.condition: secondary for secondary in record.secondary}
-    for effect in record.effects:
+    by_condition = {secondary.condition: secondary for secondary in result.secondary}
+    for effect in result.effects:
         secondary = by_condition[effect.condition]
-        for name in record.facts.metrics:
+        for name in result.facts.metrics:
             whole = secondary.metrics[name].n_scenes if name in secondary.metrics else 0
-            if whole < effect.scenes and (whole or record.facts.judged):
+            if whole < effect.scenes and (whole or result.facts.judged):
                 scenes = f"{whole} of {counted(effect.scenes, 'scene')}"
                 yield (
                     f"{capital(where(effect.condition))}, {name} is compared in {scenes}: only "

@@ -17,20 +17,20 @@ from faultpath.report.sentences.phrases import (
 )
 
 
-def headline(record: AuditResult) -> str:
+def headline(result: AuditResult) -> str:
     """Return a sentence that rests on significant effects, led by the primary contrast, and in how
     many scenes they show where these are few."""
-    if record.invalid:
-        return NO_RESULT[record.invalid]
-    primary = record.facts.primary
-    main = record.effect(primary)
-    tested = [effect for effect in record.effects if effect.acted]
+    if result.invalid:
+        return NO_RESULT[result.invalid]
+    primary = result.facts.primary
+    main = result.effect(primary)
+    tested = [effect for effect in result.effects if effect.acted]
     if main is None:
         return f"{no_pair(primary)}."
-    if record.few:
+    if result.few:
         return (
-            f"Too few scenes: {record.scenes} compared, and no difference can be significant with "
-            f"fewer than {record.testing.scenes_needed}."
+            f"Too few scenes: {result.scenes} compared, and no difference can be significant with "
+            f"fewer than {result.testing.scenes_needed}."
         )
     if not main.acted and all(effect.condition == CORRECT for effect in tested):
         return "The fault never changed a reading: no effect of it was tested."
@@ -38,20 +38,20 @@ def headline(record: AuditResult) -> str:
         return f"{capital(where(primary))}, the fault never acted: nothing was tested there."
     ends = {rate for effect in tested for rate in effect.rates}
     if ends <= {0.0, 100.0} and not any(any(map(any, effect.won)) for effect in tested):
-        every = [word for end, word in ((100.0, "succeed"), (0.0, "fail")) if end in ends]
-        return f"No difference could show: in every scene both versions {' or '.join(every)}."
-    turned = reversed_at(record)
-    if turned:
-        text = _reversal(record, main, turned)
+        endings = [word for end, word in ((100.0, "succeed"), (0.0, "fail")) if end in ends]
+        return f"No difference could show: in every scene both versions {' or '.join(endings)}."
+    reversals = reversed_at(result)
+    if reversals:
+        text = _reversal(result, main, reversals)
     else:
-        text = _ranking(record, main, [effect for effect in tested if effect is not main])
+        text = _ranking(result, main, [effect for effect in tested if effect is not main])
     # How few scenes differ qualifies who is ahead, and nothing else that a headline says.
-    return f"{text[:-1]}{_few_scenes(record)}." if " is ahead" in text else text
+    return f"{text[:-1]}{_few_scenes(result)}." if " is ahead" in text else text
 
 
-def _few_scenes(record: AuditResult) -> str:
+def _few_scenes(result: AuditResult) -> str:
     """Return in how few scenes the versions differ, of the effects that lead; else nothing."""
-    leading = [effect for effect in record.effects if effect.leads]
+    leading = [effect for effect in result.effects if effect.leads]
     few = [effect for effect in leading if effect.few_differ]
     if not few:
         return ""
@@ -66,66 +66,66 @@ def _few_scenes(record: AuditResult) -> str:
     return f" ({at}in {scenes}, {never})"
 
 
-def reversed_at(record: AuditResult) -> list[Effect]:
+def reversed_at(result: AuditResult) -> list[Effect]:
     """Return the isolated effects that sharing reverses, where advice may rest on both."""
-    of = {effect.condition: effect for effect in record.effects if effect.leads}
+    leading = {effect.condition: effect for effect in result.effects if effect.leads}
     return [
-        of[change.isolated]
-        for change in record.changes
-        if change.turn == "reversal" and change.isolated in of and SHARED in of
+        leading[change.isolated]
+        for change in result.changes
+        if change.turn == "reversal" and change.isolated in leading and SHARED in leading
     ]
 
 
-def _reversal(record: AuditResult, main: Effect, turned: Sequence[Effect]) -> str:
+def _reversal(result: AuditResult, main: Effect, reversals: Sequence[Effect]) -> str:
     """Advise against the isolated fault, unless correct inputs rank the versions as it does: then
     a test with it shows no more than one without."""
-    one, other = record.winner(turned[0].sign), record.winner(-turned[0].sign)
-    modules = " or ".join(effect.condition for effect in turned)
-    alone = f"the {modules} alone" if len(turned) < 3 else "one module alone"
+    one, other = result.winner(reversals[0].sign), result.winner(-reversals[0].sign)
+    modules = " or ".join(effect.condition for effect in reversals)
+    alone = f"the {modules} alone" if len(reversals) < 3 else "one module alone"
     correct = [
-        effect.sign for effect in record.effects if effect.condition == CORRECT and effect.leads
+        effect.sign for effect in result.effects if effect.condition == CORRECT and effect.leads
     ]
-    if turned[0].sign in correct:
-        at = f" and with it at {alone}" if main.condition == SHARED or main in turned else ""
+    if reversals[0].sign in correct:
+        at = f" and with it at {alone}" if main.condition == SHARED or main in reversals else ""
         return f"{one} is ahead without the fault{at}, {other} with it shared."
     advice = f"Do not choose by the fault at {alone}:"
-    if main.condition == CORRECT and main.leads and len(turned) == 1:
-        ahead = f"{record.winner(main.sign)} is ahead {where(CORRECT)}."
+    if main.condition == CORRECT and main.leads and len(reversals) == 1:
+        ahead = f"{result.winner(main.sign)} is ahead {where(CORRECT)}."
         return f"{ahead} {advice} sharing reverses the ranking."
     return f"{advice} {one} is ahead there, {other} with it shared."
 
 
-def _ranking(record: AuditResult, main: Effect, others: Sequence[Effect]) -> str:
+def _ranking(result: AuditResult, main: Effect, others: Sequence[Effect]) -> str:
     """Say who is ahead in the primary contrast, and one thing more.
 
     That is the shared fault where it shows something else, so that no gain in isolation stands
     without what came of it; or else who is ahead elsewhere, if it is one version in a place or two.
     """
-    state = _state(record, main)
-    alike = [effect for effect in others if _state(record, effect) == state]
+    state = _state(result, main)
+    alike = [effect for effect in others if _state(result, effect) == state]
     alike.sort(key=lambda effect: effect.condition != SHARED)
     ahead = [effect for effect in others if effect.leads and effect not in alike]
     shared = [effect for effect in others if effect.condition == SHARED]
-    if len(alike) + 1 == len(record.effects) > 1:  # the same everywhere
+    if len(alike) + 1 == len(result.effects) > 1:  # the same everywhere
         place = "under every condition" if main.leads else "under any condition"
-        return _sentence(record, [main], place=place)
+        return _sentence(result, [main], place=place)
     if shared and shared[0] not in alike:
-        return _sentence(record, [main], shared, both=main.leads)
+        return _sentence(result, [main], shared, both=main.leads)
     if not ahead:
         named = alike if len(alike) < 3 else shared
-        return _sentence(record, [main, *named], both=len(named) < 2)
+        return _sentence(result, [main, *named], both=len(named) < 2)
     # Only so many places fit into the words that a headline may have.
     named = [main, *shared]
     count = len(named) + len(ahead)
     most = 3 if main.leads or main.extreme or state == _OPEN else 2
     one_variant = len({effect.sign for effect in ahead}) == 1
     if one_variant and count <= most and main.condition in (CORRECT, SHARED):
-        return _sentence(record, named, ahead, both=count == 2)
-    return _sentence(record, named, both=False)
+        return _sentence(result, named, ahead, both=count == 2)
+    return _sentence(result, named, both=False)
 
 
 def _sentence(
-    record: AuditResult,
+    result: AuditResult,
     first: Sequence[Effect],
     second: Sequence[Effect] = (),
     *,
@@ -136,30 +136,30 @@ def _sentence(
 
     `both` names both versions in the first one; `place` stands instead of where it holds.
     """
-    question, state = record.question, _state(record, first[0])
+    question, state = result.question, _state(result, first[0])
     if both and first[0].leads:
-        state += f" of {record.winner(-first[0].sign)}"
+        state += f" of {result.winner(-first[0].sign)}"
     elif both and state == _OPEN:
         state = f"no difference between {question.baseline} and {question.repair} is significant"
     text = f"{state} {place or places(first)}"
     if second:
-        text += f"; {_state(record, second[0])} {places(second)}"
+        text += f"; {_state(result, second[0])} {places(second)}"
     return f"{text if first[0].leads else capital(text)}."
 
 
 _OPEN = "no difference is significant"
 
 
-def _state(record: AuditResult, effect: Effect) -> str:
+def _state(result: AuditResult, effect: Effect) -> str:
     """Return the result under one condition, as a clause that does not name the condition."""
     if effect.leads:
-        return f"{record.winner(effect.sign)} is ahead"
+        return f"{result.winner(effect.sign)} is ahead"
     if effect.extreme:
         return f"both nearly always {'fail' if effect.extreme == 'floor' else 'succeed'}"
     if effect.unsettled:
         return "failed trials leave it open"
     if effect.sign and effect.uneven:
-        return failed_more(record, effect)
-    if record.is_small(effect):
-        return f"the difference is below {margin(record)}"
+        return failed_more(result, effect)
+    if result.is_small(effect):
+        return f"the difference is below {margin(result)}"
     return _OPEN

@@ -12,7 +12,7 @@ DIFFERS: dict[Kind, str] = {
     "command": "commands differ",
     "state": "state differs",
 }
-"""What differs, in two words."""
+"""Differences by their kind, in two words."""
 _NOUN: dict[Kind, str] = {"reading": "reading", "command": "command", "state": "quantity"}
 _LEAST, _MOST = 3, 17
 """Digits of the two values: so few that they still look different."""

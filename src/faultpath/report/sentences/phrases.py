@@ -4,7 +4,14 @@ from collections.abc import Iterator, Sequence
 
 from faultpath.analyses.effects import Change, Effect
 from faultpath.analyses.facts import ComparisonFacts, Facts, Question
-from faultpath.analyses.model import CORRECT, SHARED, AuditResult, Invalid, where
+from faultpath.analyses.model import (
+    CORRECT,
+    SHARED,
+    AuditResult,
+    ConditionBreakEven,
+    Invalid,
+    where,
+)
 from faultpath.core.text import capital, series
 from faultpath.report.sentences.wording import interval, p_equals, p_value, signed, with_interval
 from faultpath.stats.distributions import sign_p_value
@@ -41,33 +48,33 @@ _TESTS = {
     "t test": "whether the mean effect of trainings is 0, if they spread as a Gaussian does",
     "bets on the mean": "bets against a mean of 0, which hold at whatever scene one stops",
 }
-"""What a test computes, by the beginning of its name."""
+"""Meaning of a p-value, by the beginning of its test's name."""
 
 
-def tests(record: AuditResult) -> str:
+def tests(result: AuditResult) -> str:
     """Return which tests gave which p-values, with a sentence on each; empty where none did."""
     by_name: dict[str, list[str]] = {}
-    for effect in record.effects:
-        title = record.titles[effect.condition]
+    for effect in result.effects:
+        title = result.titles[effect.condition]
         by_name.setdefault(effect.test, []).append(f"{title} {p_value(effect.p_value)}")
-    said: list[str] = []
+    sentences: list[str] = []
     for name, values in by_name.items():
         means = next((words for test, words in _TESTS.items() if name.startswith(test)), "")
         what = f"{capital(name)}: {means}. " if means else f"{capital(name)}. "
-        said.append(f"{what}p, before correction: {', '.join(values)}.")
-    return " ".join(said)
+        sentences.append(f"{what}p, before correction: {', '.join(values)}.")
+    return " ".join(sentences)
 
 
-def margin(record: AuditResult) -> str:
+def margin(result: AuditResult) -> str:
     """Return the margin below which a sequential audit counts a difference as small."""
-    return f"{record.question.margin_pp or 0.0:g} pp"
+    return f"{result.question.margin_pp or 0.0:g} pp"
 
 
-def adjusted(record: AuditResult, difference: Effect | Change) -> str:
+def adjusted(result: AuditResult, difference: Effect | Change) -> str:
     """Return `p = 0.250 after Holm`; nothing where nothing was tested."""
     if difference.corrected_p is None:
         return ""
-    family = "after Holm" if record.facts.order is None else "within the family"
+    family = "after Holm" if result.facts.order is None else "within the family"
     return f"{p_equals(difference.corrected_p)} {family}"
 
 
@@ -78,9 +85,9 @@ def only_alone(difference: Effect | Change) -> bool:
     return tested and (low > 0 or high < 0)
 
 
-def failed_more(record: AuditResult, effect: Effect) -> str:
+def failed_more(result: AuditResult, effect: Effect) -> str:
     """Say which version's trials failed more often than chance explains."""
-    missing, question = effect.missing, record.question
+    missing, question = effect.missing, result.question
     more = missing is not None and missing.repair > missing.baseline
     return f"trials of {question.repair if more else question.baseline} failed more often"
 
@@ -93,32 +100,32 @@ def places(effects: Sequence[Effect]) -> str:
     return series(list(dict.fromkeys(named)))
 
 
-def in_short(record: AuditResult, effect: Effect | None) -> str:
+def in_short(result: AuditResult, effect: Effect | None) -> str:
     """Say in a few words what an audit found under one condition."""
     if effect is None:
         return "no pair of trials to compare"
     if not effect.acted:
         return "the fault never acted: not tested"
-    if record.invalid:
-        return NO_RESULT[record.invalid].rstrip(".").lower()
+    if result.invalid:
+        return NO_RESULT[result.invalid].rstrip(".").lower()
     if effect.sign:
         at = f", but at the {effect.extreme}" if effect.extreme else ""
         at = at or (", but trials failed unevenly" if effect.uneven else "")
-        return f"{record.winner(effect.sign)} succeeds more often{at}"
+        return f"{result.winner(effect.sign)} succeeds more often{at}"
     if effect.unsettled:
         return "not significant: trials that failed could undo it"
-    if record.few:
+    if result.few:
         return "too few scenes"
-    p = f" ({adjusted(record, effect)})" if only_alone(effect) else ""
-    if record.is_small(effect):
-        return f"differ by less than {margin(record)}{p}"
+    p = f" ({adjusted(result, effect)})" if only_alone(effect) else ""
+    if result.is_small(effect):
+        return f"differ by less than {margin(result)}{p}"
     return f"no significant difference{p}"
 
 
-def change(record: AuditResult, change: Change) -> str:
+def change(result: AuditResult, change: Change) -> str:
     """Say whether sharing the fault reverses the ranking, changes the difference, or neither."""
-    effects = {effect.condition: effect for effect in record.effects}
-    if record.invalid:
+    effects = {effect.condition: effect for effect in result.effects}
+    if result.invalid:
         return (
             f"Nothing follows of the change from the effect {where(change.isolated)} to that "
             f"{where(SHARED)}."
@@ -126,11 +133,11 @@ def change(record: AuditResult, change: Change) -> str:
     ends = effects[change.isolated], effects[SHARED]
     values = " to ".join(f"{signed(end.value)} pp" for end in ends)
     numbers = f"{values}; change {signed(change.value)} pp {interval(change)}".rstrip()
-    numbers += f", {adjusted(record, change)}"
+    numbers += f", {adjusted(result, change)}"
     numbers += ": not significant, although the interval excludes 0" if only_alone(change) else ""
     alone, shared = where(change.isolated), where(SHARED)
     if change.turn == "reversal":
-        one, other = (record.winner(end.sign) for end in ends)
+        one, other = (result.winner(end.sign) for end in ends)
         aside = " One of the two lies at the floor or ceiling: this carries no headline."
         return (
             f"Sharing the fault reverses the ranking: {alone}, {one} succeeds more often; "
@@ -153,20 +160,20 @@ def no_pair(condition: str) -> str:
     return f"{capital(where(condition))}, no pair of trials is left to compare"
 
 
-def not_standing(record: AuditResult) -> Iterator[str]:
+def not_standing(result: AuditResult) -> Iterator[str]:
     """Say of each interval that excludes 0 without a significant difference why it is not one."""
-    contrasts = f"{record.testing.hypotheses} contrasts"
-    for effect in () if record.invalid else filter(only_alone, record.effects):
+    contrasts = f"{result.testing.hypotheses} contrasts"
+    for effect in () if result.invalid else filter(only_alone, result.effects):
         yield (
             f"{capital(where(effect.condition))}, the interval excludes 0, but "
-            f"{adjusted(record, effect)} ({contrasts}): the difference is not "
+            f"{adjusted(result, effect)} ({contrasts}): the difference is not "
             "significant."
         )
 
 
-def earlier_analyses(record: AuditResult) -> str:
+def earlier_analyses(result: AuditResult) -> str:
     """Say what was concluded before, and what that does to what is significant now."""
-    earlier = record.earlier
+    earlier = result.earlier
     counts = sorted({analysis.scenes for analysis in earlier if analysis.scenes is not None})
     with_scenes = f" with {series([str(n) for n in counts])} scenes" if counts else ""
     primaries = series(list(dict.fromkeys(f"'{analysis.primary}'" for analysis in earlier)))
@@ -178,45 +185,45 @@ def earlier_analyses(record: AuditResult) -> str:
     )
 
 
-def for_trainings(record: AuditResult) -> Iterator[str]:
+def for_trainings(result: AuditResult) -> Iterator[str]:
     """Say on what a result for newly trained models rests, and in how many trainings which version
     is ahead, by a sign test: that holds whatever the distribution of trainings."""
-    if record.question.generalise != "models" or record.invalid:
+    if result.question.generalise != "models" or result.invalid:
         return
-    run = min((len(effect.per_seed) for effect in record.effects), default=0)
+    run = min((len(effect.per_seed) for effect in result.effects), default=0)
     yield (
         f"{run} trainings stand for new ones as far as trainings spread evenly around their "
         "mean, as a Gaussian does: a rare collapse that none of them had is not seen."
     )
-    for effect in record.effects:
+    for effect in result.effects:
         values = effect.per_seed
         repair, baseline = sum(value > 0 for value in values), sum(value < 0 for value in values)
         even = len(values) - repair - baseline
         yield (
-            f"{capital(where(effect.condition))}, {record.winner(1 if repair >= baseline else -1)} "
+            f"{capital(where(effect.condition))}, {result.winner(1 if repair >= baseline else -1)} "
             f"is ahead in {max(repair, baseline)} of {len(values)} trainings"
             f"{f', neither in {even}' if even else ''}, "
             f"{p_equals(sign_p_value(repair, baseline))} (sign test, whatever their distribution)."
         )
 
 
-def in_trials_that_ran(record: AuditResult) -> Iterator[str]:
+def in_trials_that_ran(result: AuditResult) -> Iterator[str]:
     """Say what the trials that ran show where only those that failed stand in the way."""
-    question = record.question
-    for effect in record.effects:
+    question = result.question
+    for effect in result.effects:
         if not effect.unsettled or effect.missing is None:
             continue
         text = (
             f"{capital(where(effect.condition))}, the trials that ran favour "
-            f"{record.winner(1 if effect.value > 0 else -1)} ({with_interval(effect)} pp, "
-            f"{adjusted(record, effect)}), which holds if failing has nothing to do with how a "
+            f"{result.winner(1 if effect.value > 0 else -1)} ({with_interval(effect)} pp, "
+            f"{adjusted(result, effect)}), which holds if failing has nothing to do with how a "
             "trial would have ended"
         )
         if effect.missing.reruns is not None:
-            of = zip(effect.missing.reruns, (question.repair, question.baseline), strict=True)
-            needed = series([f"{count} of {name}" for count, name in of if count])
+            counts = zip(effect.missing.reruns, (question.repair, question.baseline), strict=True)
+            needed = series([f"{count} of {name}" for count, name in counts if count])
             how = "the same command tries them again"
-            if record.facts.judged:
+            if result.facts.judged:
                 how = "add their outcomes to the results"
             text += (
                 f"; otherwise at least {needed} that failed have to run, and come out as the "
@@ -225,25 +232,47 @@ def in_trials_that_ran(record: AuditResult) -> Iterator[str]:
         yield f"{text}."
 
 
-def scenes_run(record: AuditResult) -> str:
+def scenes_run(result: AuditResult) -> str:
     """Return the number of scenes, and of how many where an audit could have taken more."""
-    most = str(record.facts.n_scenes)
-    if record.stopped is None or record.stopped.scenes == record.facts.n_scenes:
+    most = str(result.facts.n_scenes)
+    if result.stopped is None or result.stopped.scenes == result.facts.n_scenes:
         return most
-    return f"{record.stopped.scenes} of at most {most}"
+    return f"{result.stopped.scenes} of at most {most}"
 
 
-def stopping(record: AuditResult) -> str:
+def stopping(result: AuditResult) -> str:
     """Return how a sequential audit was to stop; empty for one that is not."""
-    order, margin_pp = record.facts.order, record.question.margin_pp
+    order, margin_pp = result.facts.order, result.question.margin_pp
     if order is None:
         return ""
-    every = record.question.stop_when == "all-decided"
+    every = result.question.stop_when == "all-decided"
     what = "every effect" if every else "the primary contrast"
     small = f" or shown to be smaller than {margin_pp:g} pp" if margin_pp else ""
     return (
         f"the audit was to stop once {what} is significant{small}, analysed after every "
         f"{'scene' if order.per_analysis == 1 else f'{order.per_analysis} scenes'}, or after "
-        f"{record.facts.n_scenes}; the order of its scenes was drawn beforehand from the hash "
+        f"{result.facts.n_scenes}; the order of its scenes was drawn beforehand from the hash "
         f"of the library and the seed {order.seed}"
     )
+
+
+FREQUENCY = {
+    "everywhere": "at every frequency",
+    "many": "where the fault is frequent; how rare it may be is open",
+    "few": "where the fault is rare; how frequent it may be is open",
+}
+BETA = {
+    "everywhere": "at every beta",
+    "many": "where most of its faults are common cause; how few may be is open",
+    "few": "where few of its faults are common cause; how many may be is open",
+}
+
+
+def ahead(question: Question, share: ConditionBreakEven, beta: bool = False) -> str:
+    """Return who is ahead at which frequencies of the fault, or at which beta; empty for nobody."""
+    clauses: list[str] = []
+    for part in share.ahead:
+        version = question.repair if part.sign > 0 else question.baseline
+        where = (BETA if beta else FREQUENCY).get(part.where, f"{part.where} {part.percent} %")
+        clauses.append(f"{version} is ahead {where}{' on' if part.where == 'from' else ''}")
+    return ", ".join(clauses)

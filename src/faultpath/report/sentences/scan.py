@@ -40,50 +40,49 @@ def rate(percent: float) -> str:
     return f"{percent:.0f} %"
 
 
-def headline(record: ScanResult) -> str:
+def headline(result: ScanResult) -> str:
     """Return which errors cancel, in each version."""
-    if record.invalid:
-        return NO_RESULT[record.invalid]
-    texts = [_in_short(record, version) for version in record.versions]
+    if result.invalid:
+        return NO_RESULT[result.invalid]
+    texts = [_in_short(result, version) for version in result.versions]
     if len(texts) == 1:
         return f"{capital(texts[0])}."
-    names = (version.variant for version in record.versions)
+    names = (version.variant for version in result.versions)
     return " ".join(f"In {name}, {text}." for name, text in zip(names, texts, strict=True))
 
 
-def _in_short(record: ScanResult, version: ScannedVersion) -> str:
+def _in_short(result: ScanResult, version: ScannedVersion) -> str:
     listed = version.listed
     if not listed:
         return "no pair of errors is shown to cancel"
     cancelling = [pair for pair in listed if pair.kind == "cancel"]
     best = max(cancelling or listed, key=lambda pair: pair.gain)
     if not cancelling:
-        return f"no pair of errors is shown to cancel, but {_covers(record, best)}"
+        return f"no pair of errors is shown to cancel, but {_covers(result, best)}"
     if len(cancelling) == 1:
-        return f"{_both(record, best)} cancel: {_rates(best)}"
+        return f"{_both(result, best)} cancel: {_rates(best)}"
     return (
-        f"{len(cancelling)} pairs of errors cancel, such as {_both(record, best)}: {_rates(best)}"
+        f"{len(cancelling)} pairs of errors cancel, such as {_both(result, best)}: {_rates(best)}"
     )
 
 
-def sentences(record: ScanResult) -> tuple[str, ...]:
+def sentences(result: ScanResult) -> tuple[str, ...]:
     """Return what the scan found, sentence by sentence, then what it left out."""
-    if record.invalid:
+    if result.invalid:
         return ()
-    results = (*_results(record), *_idle(record), *_halved(record), _counts(record))
-    left_out = (*_few(record), *_unsized(record), *_hard(record), *_failed(record))
-    return (*results, *left_out, _limits(record))
+    results = *_results(result), *_idle(result), *_halved(result), _counts(result)
+    return *results, *_left_out(result)
 
 
-def _results(record: ScanResult) -> Iterator[str]:
-    for version in record.versions:
-        before = f"In {version.variant}: " if len(record.versions) > 1 else ""
+def _results(result: ScanResult) -> Iterator[str]:
+    for version in result.versions:
+        before = f"In {version.variant}: " if len(result.versions) > 1 else ""
         for pair in version.listed:
-            yield before + of_pair(record, pair)
+            yield before + of_pair(result, pair)
         hurting = [single for single in version.singles if single.kind == "hurts"]
         if hurting:
             names = [
-                f"{named(record.errors[single.error])} {rate(single.alone)}"
+                f"{named(result.errors[single.error])} {rate(single.alone)}"
                 for single in sorted(hurting, key=lambda single: single.alone)
             ]
             none = rate(hurting[0].none)
@@ -97,22 +96,22 @@ def _results(record: ScanResult) -> Iterator[str]:
             )
 
 
-def of_pair(record: ScanResult, pair: ScannedPair) -> str:
+def of_pair(result: ScanResult, pair: ScannedPair) -> str:
     """Return what two errors do to each other, and what follows for who corrects them."""
     if pair.kind == "covers":
-        return f"{capital(_covers(record, pair))}."
-    first, second = (record.errors[place] for place in pair.errors)
+        return f"{capital(_covers(result, pair))}."
+    first, second = (result.errors[place] for place in pair.errors)
     one, other = f"only the {in_words(first.source)}", f"only the {in_words(second.source)}"
     if first.source == second.source:
         one, other = (f"it only at {error.reader}" for error in (first, second))
     return (
-        f"{capital(_both(record, pair))} cancel: {_rates(pair)}. Correct {one}: "
+        f"{capital(_both(result, pair))} cancel: {_rates(pair)}. Correct {one}: "
         f"{rate(pair.second)}. Correct {other}: {rate(pair.first)}. Correct both together."
     )
 
 
-def _both(record: ScanResult, pair: ScannedPair) -> str:
-    first, second = (named(record.errors[place]) for place in pair.errors)
+def _both(result: ScanResult, pair: ScannedPair) -> str:
+    first, second = (named(result.errors[place]) for place in pair.errors)
     return f"{first} and {second}"
 
 
@@ -120,10 +119,10 @@ def _rates(pair: ScannedPair) -> str:
     return f"{rate(pair.both)} with both, {rate(pair.none)} with neither"
 
 
-def _covers(record: ScanResult, pair: ScannedPair) -> str:
+def _covers(result: ScanResult, pair: ScannedPair) -> str:
     rates = dict(zip(pair.errors, (pair.first, pair.second), strict=True))
     (covering,) = {*pair.errors} - {pair.worse}
-    worse, other = record.errors[pair.worse], record.errors[covering]
+    worse, other = result.errors[pair.worse], result.errors[covering]
     return (
         f"{named(other)} covers for {named(worse)}: {_rates(pair)}, {rate(rates[pair.worse])} with "
         f"the one at {worse.reader} alone, {rate(rates[covering])} with the one at {other.reader} "
@@ -131,12 +130,12 @@ def _covers(record: ScanResult, pair: ScannedPair) -> str:
     )
 
 
-def _halved(record: ScanResult) -> Iterator[str]:
+def _halved(result: ScanResult) -> Iterator[str]:
     """Say which sizes were halved, those of a source together where they are equal."""
     sizes: dict[str, list[str]] = {}
-    for error in record.errors:
+    for error in result.errors:
         if error.halvings:
-            alike = [other for other in record.errors if other.source == error.source]
+            alike = [other for other in result.errors if other.source == error.source]
             same = len({tuple(map(abs, other.change)) for other in alike}) == 1
             place = in_words(error.source) + ("" if same else f" at {error.reader}")
             shown = size(error)
@@ -153,40 +152,23 @@ def _halved(record: ScanResult) -> Iterator[str]:
         )
 
 
-def _idle(record: ScanResult) -> Iterator[str]:
+def _idle(result: ScanResult) -> Iterator[str]:
     """Say which errors changed no reading."""
-    for version in record.versions:
-        before = f"In {version.variant}: " if len(record.versions) > 1 else ""
+    for version in result.versions:
+        before = f"In {version.variant}: " if len(result.versions) > 1 else ""
         if names := [named(first.error) for first in version.first if not first.acted]:
             yield f"{before}No reading was ever changed by {series(names)}: nothing was tested."
 
 
-def _unsized(record: ScanResult) -> Iterator[str]:
-    """Say which sources were not scanned."""
-    names = [s.name for s in record.ranking.sources if not s.fault and not s.at]
-    if names:
-        yield (f"Without a declared size, and so not scanned: {series(names)}; --fault gives one.")
-
-
-def _hard(record: ScanResult) -> Iterator[str]:
-    """Say where so few trials succeed without an error that none can cost much."""
-    for version in record.versions:
-        if version.first[0].none < FLOOR_PERCENT:
-            yield (
-                f"In {version.variant} only {rate(version.first[0].none)} succeed without an "
-                "error, so that none can cost much: choose easier scenes."
-            )
-
-
-def _counts(record: ScanResult) -> str:
-    chosen, total = len(record.chosen), len(record.errors)
-    first, second = record.scenes
+def _counts(result: ScanResult) -> str:
+    chosen, total = len(result.chosen), len(result.errors)
+    first, second = result.scenes
     if not chosen:
         return (
             f"Of {counted(total, 'error')}, each run alone in {counted(first, 'scene')}, none is "
             "seen to cost success, so no pair was tested."
         )
-    pairs, alone = len(record.versions[0].pairs), len(record.versions[0].singles)
+    pairs, alone = len(result.versions[0].pairs), len(result.versions[0].singles)
     same = alone - chosen
     others = f", {same} at other readers of the same sources" if same else ""
     return (
@@ -196,52 +178,54 @@ def _counts(record: ScanResult) -> str:
     )
 
 
-def _few(record: ScanResult) -> Iterator[str]:
-    """Say where pairs ran in so few scenes that little can be shown of them."""
-    scenes = record.scenes[1]
-    if record.chosen and scenes < FEW_SCENES:
+def _left_out(result: ScanResult) -> Iterator[str]:
+    """Say what was not scanned or may have been missed, and how far the list holds."""
+    scenes = result.scenes[1]
+    if result.chosen and scenes < FEW_SCENES:
         yield (
             f"In {counted(scenes, 'scene')} only pairs that cancel nearly completely are seen: a "
             "pair that is not listed may cancel as well. A larger library leaves more scenes for "
             "pairs."
         )
-
-
-def _failed(record: ScanResult) -> Iterator[str]:
-    if record.failed:
+    if names := [s.name for s in result.ranking.sources if not s.fault and not s.at]:
+        yield f"Without a declared size, and so not scanned: {series(names)}; --fault gives one."
+    for version in result.versions:
+        if version.first[0].none < FLOOR_PERCENT:
+            yield (
+                f"In {version.variant} only {rate(version.first[0].none)} succeed without an "
+                "error, so that none can cost much: choose easier scenes."
+            )
+    if result.failed:
         yield (
-            f"{counted(record.failed, 'trial')} failed and left their scenes out of what they are "
+            f"{counted(result.failed, 'trial')} failed and left their scenes out of what they are "
             "part of: what is listed holds if failing has nothing to do with how they would have "
             "ended."
         )
-
-
-def _limits(record: ScanResult) -> str:
-    apart = " Versions are tested separately." if len(record.versions) > 1 else ""
-    return (
-        f"What is listed holds for {scenes_like_these(record.facts)}, at these sizes. Nothing is "
+    apart = " Versions are tested separately." if len(result.versions) > 1 else ""
+    yield (
+        f"What is listed holds for {scenes_like_these(result.facts)}, at these sizes. Nothing is "
         f"claimed of other pairs, nor that any errors add up.{apart}"
     )
 
 
-def commands(record: ScanResult) -> tuple[str, ...]:
+def commands(result: ScanResult) -> tuple[str, ...]:
     """Return a command for each listed pair that audits a repair under these errors."""
-    question, facts = record.question, record.facts
+    question, facts = result.question, result.facts
     if facts.system.endswith(" object"):
         return ()
-    listed = {pair.errors for version in record.versions for pair in version.listed}
+    listed = {pair.errors for version in result.versions for pair in version.listed}
     repair = question.repair or facts.other or ANY_REPAIR
     options = [f"--set={key}={value}" for key, value in question.options.items()]
     words = ["faultpath", "audit", facts.system, *options]
     words += ["--baseline", question.variant, "--repair", repair, "--fault"]
-    return tuple(shlex.join([*words, _fault(record, places)]) for places in sorted(listed))
+    return tuple(shlex.join([*words, _fault(result, places)]) for places in sorted(listed))
 
 
-def _fault(record: ScanResult, places: Sequence[int]) -> str:
+def _fault(result: ScanResult, places: Sequence[int]) -> str:
     """Return both errors as one fault; it names no readers where it reaches all of them."""
-    first, second = (record.errors[place] for place in places)
+    first, second = (result.errors[place] for place in places)
     if first.fault != second.fault:
         return f"{first.text} & {second.text}"
-    alike = [e for e in record.errors if (e.source, e.sign) == (first.source, first.sign)]
+    alike = [e for e in result.errors if (e.source, e.sign) == (first.source, first.sign)]
     whole = len(alike) == 2 and all(error.at == (error.reader,) for error in alike)
     return first.fault if whole else f"{first.fault}@{'+'.join((*first.at, *second.at))}"

@@ -82,11 +82,11 @@ def p_equals(value: float) -> str:
 
 
 def break_even(result: BreakEven) -> str:
-    """Return the frequencies at which nobody is decided to be ahead, in percent.
+    """Return the frequencies at which nobody is significantly ahead, in percent.
 
     `59 [33, 80]` with the estimate in front where there is one; `[0, 12] and [80, 100]` for two
-    pieces; `none` where one variant is ahead throughout; `any` where at no frequency it is decided
-    who is. Ends are rounded outwards.
+    pieces; `none` where one variant is ahead throughout; `any` where none is at any frequency.
+    Ends are rounded outwards.
     """
     if result.kind == "empty":
         return "none"
@@ -112,13 +112,13 @@ def ended(facts: ComparisonFacts, status: str) -> str:
 
 def faults(facts: ComparisonFacts, units: Mapping[str, str] | None = None) -> str:
     """Return what the fault does to each channel, whoever gets it, with the unit of what it adds
-    where `units` of channels are known; empty in records without it."""
+    where `units` of channels are known; empty in results without it."""
     words: list[str] = []
     for fault in facts.faults:
-        of = (units or {}).get(fault.channel, "1")
+        unit_name = (units or {}).get(fault.channel, "1")
         how = fault.intervention
         added = how.kind in _ADDED and not getattr(how, "relative", False)
-        in_unit = f" ({unit(of)})" if added and of not in ("", "1") else ""
+        in_unit = f" ({unit(unit_name)})" if added and unit_name not in ("", "1") else ""
         words.append(fault.aimed_at("*").describe() + in_unit)
     # `describe` says at whom a fault aims, and an audit aims it at each in turn.
     return "; ".join(re.sub(" at every [a-z]+", "", text) for text in words)
