@@ -11,7 +11,7 @@ from faultpath_quadrotor.estimators.eskf import Filtered
 from faultpath_quadrotor.estimators.kalman import Trust
 from faultpath_quadrotor.estimators.sensors import SENSORS, SensorErrors, readings, sensors
 from faultpath_quadrotor.plant import TorchPlant
-from faultpath_quadrotor.plant.vehicle_batch import Vehicle
+from faultpath_quadrotor.plant.protocol import Vehicle
 from faultpath_quadrotor.state import State
 from torch import Tensor
 

@@ -28,7 +28,7 @@ from faultpath_quadrotor.planners.sampler import AutoregressiveSampler, BundledS
 from faultpath_quadrotor.plant.world import World
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.predictors import Predictor, PredictorInputs
-from faultpath_quadrotor.predictors.predictor_inputs import history, predictor_inputs
+from faultpath_quadrotor.predictors.base import history, predictor_inputs
 from faultpath_quadrotor.predictors.rollout import Rollout, rolling
 from faultpath_quadrotor.reconstruction import Reconstruction
 from faultpath_quadrotor.scenes.field import DistanceField

@@ -9,17 +9,17 @@ import torch
 from faultpath_quadrotor import native
 from faultpath_quadrotor.perception.camera import HEIGHT, RANGE_M, WIDTH
 from faultpath_quadrotor.perception.clearance import ClearanceModel
-from faultpath_quadrotor.perception.depth_clearance import (
-    DepthClearance,
-    PerceptionSettings,
-    in_view,
-    near,
-)
 from faultpath_quadrotor.perception.labels import (
     HIGHEST_M,
     LOWEST_M,
     between_pixels,
     visible_distance,
+)
+from faultpath_quadrotor.perception.module import (
+    DepthClearance,
+    PerceptionSettings,
+    in_view,
+    near,
 )
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.training import clearance_data

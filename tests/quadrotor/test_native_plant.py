@@ -4,7 +4,7 @@ import pytest
 import torch
 from faultpath_quadrotor import native, so3
 from faultpath_quadrotor.plant import PlantState, TorchPlant
-from faultpath_quadrotor.plant.vehicle_batch import Vehicle
+from faultpath_quadrotor.plant.protocol import Vehicle
 from faultpath_quadrotor.plant.world import World
 from faultpath_quadrotor.scenes.field import DistanceField
 from faultpath_quadrotor.scenes.library import load_library

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 from faultpath_quadrotor import choices, models
-from faultpath_quadrotor.checkpoint import shipped_folder
 from faultpath_quadrotor.choices import QuadrotorChoices
+from faultpath_quadrotor.models import shipped_folder
 from faultpath_quadrotor.options import QuadrotorOptions
 from faultpath_quadrotor.planners import AutoregressiveSampler, SamplerSettings
 from faultpath_quadrotor.plant.wind import Winds

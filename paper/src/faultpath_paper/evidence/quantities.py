@@ -11,8 +11,7 @@ from faultpath_quadrotor.device import arithmetic
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.predictors.kinematic import LinearDrag
 from faultpath_quadrotor.reconstruction import DisturbanceObserver
-from faultpath_quadrotor.training.parts import DataFile, Progress, make_missing
-from faultpath_quadrotor.training.pool import code_of
+from faultpath_quadrotor.training.pool import DataFile, Progress, code_of, make_missing
 from faultpath_quadrotor.training.windows import HISTORY, Windows
 from torch import Tensor
 

@@ -11,12 +11,11 @@ from torch import Tensor
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.estimators.sensors import SAMPLES
 from faultpath_quadrotor.plant import Plant, TorchPlant
-from faultpath_quadrotor.plant.protocol import Contact, TrialProgress
-from faultpath_quadrotor.plant.vehicle_batch import Vehicle
+from faultpath_quadrotor.plant.protocol import Contact, TrialProgress, Vehicle
 from faultpath_quadrotor.plant.wind import Winds
 from faultpath_quadrotor.scenes.geometry import Geometry
+from faultpath_quadrotor.scenes.library import GOAL_RADIUS_M
 from faultpath_quadrotor.scenes.scene import Scene
-from faultpath_quadrotor.scenes.soundness import GOAL_RADIUS_M
 from faultpath_quadrotor.state import State, padded_lanes
 from faultpath_quadrotor.vehicle import CONTROL_DT_S, CONTROL_RATE_HZ, STEPS_PER_CONTROL
 

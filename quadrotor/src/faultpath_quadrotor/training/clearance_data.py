@@ -21,8 +21,15 @@ from faultpath_quadrotor.scenes.geometry import Geometry
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.scenes.scene import Scene
 from faultpath_quadrotor.state import State
-from faultpath_quadrotor.training.parts import CLEARANCE_POOL, Progress
-from faultpath_quadrotor.training.pool import PoolPart, PoolRecipe, code_of, make_pool, read_pool
+from faultpath_quadrotor.training.catalogue import CLEARANCE_POOL
+from faultpath_quadrotor.training.pool import (
+    PoolPart,
+    PoolRecipe,
+    Progress,
+    code_of,
+    make_pool,
+    read_pool,
+)
 from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M
 
 PER_METRE = 10_000

@@ -15,9 +15,9 @@ from faultpath_quadrotor.perception.clearance import ClearanceModel
 from faultpath_quadrotor.perception.labels import HIGHEST_M, LOWEST_M
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.training import clearance_data
+from faultpath_quadrotor.training.catalogue import CLEARANCE_POOL
 from faultpath_quadrotor.training.clearance_data import ClearanceRecipe, Samples
 from faultpath_quadrotor.training.fitting import ModelTask
-from faultpath_quadrotor.training.parts import CLEARANCE_POOL
 from faultpath_quadrotor.training.pool import pools_sha256
 
 VALIDATION_FROM = 90

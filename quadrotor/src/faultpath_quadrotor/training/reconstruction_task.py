@@ -19,6 +19,7 @@ from faultpath_quadrotor.choices import RECONSTRUCTIONS
 from faultpath_quadrotor.models import blank_reconstruction
 from faultpath_quadrotor.platform import PLATFORM, TRAJECTORY
 from faultpath_quadrotor.reconstruction import RecurrentReconstruction, WindNetwork
+from faultpath_quadrotor.training.catalogue import TRAJECTORY_POOL
 from faultpath_quadrotor.training.corruption import (
     DCC_HALF_RANGE,
     STATE_STD,
@@ -27,7 +28,6 @@ from faultpath_quadrotor.training.corruption import (
     state_noise,
 )
 from faultpath_quadrotor.training.fitting import ModelTask
-from faultpath_quadrotor.training.parts import TRAJECTORY_POOL
 from faultpath_quadrotor.training.pool import pool_path, pools_sha256
 from faultpath_quadrotor.training.windows import HISTORY, Windows, every_history, windows_of
 

@@ -24,8 +24,14 @@ from faultpath_quadrotor.plant.world import CONTROL_STEPS
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.training import recorded
-from faultpath_quadrotor.training.parts import TRAJECTORY_POOL, Progress
-from faultpath_quadrotor.training.pool import PoolPart, PoolRecipe, code_of, make_pool
+from faultpath_quadrotor.training.catalogue import TRAJECTORY_POOL
+from faultpath_quadrotor.training.pool import (
+    PoolPart,
+    PoolRecipe,
+    Progress,
+    code_of,
+    make_pool,
+)
 from faultpath_quadrotor.training.recorded import Flights, blank_values
 from faultpath_quadrotor.vehicle import CONTROL_RATE_HZ
 
