@@ -25,7 +25,7 @@ from faultpath_quadrotor.perception import DepthClearance, DepthRenderer, mounte
 from faultpath_quadrotor.planners import CEM, MPPI, NavigationCost, Scored
 from faultpath_quadrotor.planners.mppi import softmax
 from faultpath_quadrotor.planners.sampler import AutoregressiveSampler, BundledSampler
-from faultpath_quadrotor.plant.world import World
+from faultpath_quadrotor.plant.module import World
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.predictors import Predictor, PredictorInputs
 from faultpath_quadrotor.predictors.base import history, predictor_inputs

@@ -4,8 +4,8 @@ import pytest
 import torch
 from faultpath_quadrotor import native, so3
 from faultpath_quadrotor.plant import PlantState, TorchPlant
+from faultpath_quadrotor.plant.module import World
 from faultpath_quadrotor.plant.protocol import Vehicle
-from faultpath_quadrotor.plant.world import World
 from faultpath_quadrotor.scenes.field import DistanceField
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.scenes.scene import Box, Cylinder, Scene

@@ -1,10 +1,9 @@
 """Shipped parts by name, with their trained weights and the cards that say where they come from."""
 
-from collections.abc import Mapping
 from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import TypeVar
 
 import torch
 from pydantic import JsonValue
@@ -18,7 +17,6 @@ from faultpath_quadrotor.estimators import ErrorStateFilter, Estimator
 from faultpath_quadrotor.estimators.kalman import Trust
 from faultpath_quadrotor.estimators.sensors import sensors
 from faultpath_quadrotor.perception import ClearanceModel
-from faultpath_quadrotor.planners import CEM, MPPI, AutoregressiveSampler, NavigationCost, Planner
 from faultpath_quadrotor.platform import CLEARANCE, PLATFORM
 from faultpath_quadrotor.predictors import (
     AnchoredPredictor,
@@ -37,6 +35,7 @@ from faultpath_quadrotor.reconstruction import (
 )
 
 FORMAT = "faultpath-model/1"
+Model = TypeVar("Model", Predictor, Reconstruction)
 
 
 class ModelCard(Card):
@@ -107,20 +106,14 @@ def blank_reconstruction(name: str) -> Reconstruction:
 def predictor(name: str, seed: int | None, device: torch.device = CPU) -> Predictor:
     """Return a predictor as trained with a seed, blank for `None`; raises as `_fill`."""
     with device:
-        model = blank_predictor(name)
-        if seed is not None and isinstance(model, AnchoredPredictor | UnanchoredPredictor):
-            _fill(model.network, name, seed)
-    return model
+        return _trained(blank_predictor(name), name, seed)
 
 
 @lru_cache
 def reconstruction(name: str, seed: int | None, device: torch.device = CPU) -> Reconstruction:
     """Return a reconstruction as trained with a seed, blank for `None`; raises as `_fill`."""
     with device:
-        model = blank_reconstruction(name)
-        if seed is not None and isinstance(model, RecurrentReconstruction):
-            _fill(model.network, name, seed)
-    return model
+        return _trained(blank_reconstruction(name), name, seed)
 
 
 @lru_cache
@@ -132,29 +125,17 @@ def clearance_model(device: torch.device = CPU) -> ClearanceModel:
     return model.eval()
 
 
-_FILTERS: Mapping[str, Any] = {
-    "eskf": {},
-    "eskf-no-bias": {"biases": False},
-    "eskf-cautious": {"doubt": 3.0},
-}
-"""What each Kalman filter trusts otherwise than `Trust`."""
-
-
 def estimator(name: str, fixes: Fixes = Fixes.OPTICAL, device: torch.device = CPU) -> Estimator:
     """Return an estimator of `choices.ESTIMATORS`."""
-    return ErrorStateFilter(Trust(sensors(fixes), **_FILTERS[name]), device)
+    biases, doubt = name != "eskf-no-bias", 3.0 if name == "eskf-cautious" else 1.0
+    return ErrorStateFilter(Trust(sensors(fixes), biases, doubt), device)
 
 
-PLANNERS: Mapping[str, type[Planner]] = {"mppi": MPPI, "cem": CEM}
-"""Classes of `choices.PLANNERS`; `planner` builds them."""
-
-
-def planner(name: str, sampler: AutoregressiveSampler) -> Planner:
-    """Return a planner of `choices.PLANNERS`."""
-    cost = NavigationCost(PLATFORM.planner.weights)
-    if name == "cem":
-        return CEM(sampler, cost)
-    return MPPI(sampler, cost, PLATFORM.planner.temperature)
+def _trained(model: Model, name: str, seed: int | None) -> Model:
+    learned = AnchoredPredictor | UnanchoredPredictor | RecurrentReconstruction
+    if seed is not None and isinstance(model, learned):
+        _fill(model.network, name, seed)
+    return model
 
 
 def _fill(network: nn.Module, name: str, seed: int) -> None:

@@ -35,9 +35,8 @@ from faultpath_quadrotor.perception import DepthClearance, DepthRenderer
 from faultpath_quadrotor.perception.module import Perception
 from faultpath_quadrotor.planners.module import PlannerModule
 from faultpath_quadrotor.plant import TorchPlant
-from faultpath_quadrotor.plant.module import VehiclePlant
+from faultpath_quadrotor.plant.module import VehiclePlant, World
 from faultpath_quadrotor.plant.protocol import Vehicle
-from faultpath_quadrotor.plant.world import World
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.reconstruction.base import WindModule
 from faultpath_quadrotor.scenes.field import DistanceField

@@ -8,7 +8,7 @@ from faultpath_paper.claims.rules import FEW_SCENES, REFUTED, Bound, Judged, by_
 from faultpath_paper.claims.statement import Statement, Statements, beside, size
 from faultpath_paper.detection import detection, enough, resampled
 from faultpath_paper.pages import table_5
-from faultpath_paper.quantities.crossing import Crossing, crossing, greater_effect
+from faultpath_paper.quantities.differences import Crossing, crossing, greater_effect
 from faultpath_paper.results import Results
 
 

@@ -19,8 +19,7 @@ from faultpath.plugin.recording import taps_of
 from faultpath.run import SystemSpec, Treatment, load_system
 from faultpath_quadrotor import native
 from faultpath_quadrotor.device import CPU
-from faultpath_quadrotor.plant.module import ACTION, Flying
-from faultpath_quadrotor.plant.world import CONTROL_STEPS
+from faultpath_quadrotor.plant.module import ACTION, CONTROL_STEPS, Flying
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.training import recorded
