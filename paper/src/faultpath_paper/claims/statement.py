@@ -20,7 +20,7 @@ from faultpath_paper.claims.rules import (
 )
 from faultpath_paper.detection import detection, least_detectable, resampled
 from faultpath_paper.quantities.differences import Pair, together
-from faultpath_paper.results import NotRun, Quantity, Results, Undecidable, decisive
+from faultpath_paper.results import NotRun, Quantity, Results, Undecidable, decisive, quantity
 
 NO_EFFECT = {"pp": 0.0, "s": 0.0, "m": 0.0, "m/s^2": 0.0, "times": 1.0}
 """Value of no effect, by unit; in any other unit, as for a share of scenes, there is no sign."""
@@ -238,14 +238,11 @@ class TurnsDown:
         return shown(self.words, turned.judge(), turned.change, self.paper, 0.0, counts)
 
 
-def seeds_that_turn(before: Pair, after: Pair) -> Quantity:
+@quantity
+def seeds_that_turn(results: Results, before: Pair, after: Pair) -> Contrast:
     """Return in how many seeds the difference is above 0 before and below 0 after."""
-
-    def quantity(results: Results) -> Contrast:
-        one, two = together(results, before, after)
-        if one.n_seeds < ALL_SEEDS:
-            raise Undecidable(f"run with {one.n_seeds} of {ALL_SEEDS} seeds")
-        turning = sum(b > 0 > a for b, a in zip(one.per_seed, two.per_seed, strict=True))
-        return Contrast(float(turning), "seeds", one.n_scenes, against_zero=False)
-
-    return quantity
+    one, two = together(results, before, after)
+    if one.n_seeds < ALL_SEEDS:
+        raise Undecidable(f"run with {one.n_seeds} of {ALL_SEEDS} seeds")
+    turning = sum(b > 0 > a for b, a in zip(one.per_seed, two.per_seed, strict=True))
+    return Contrast(float(turning), "seeds", one.n_scenes, against_zero=False)

@@ -18,7 +18,7 @@ from faultpath.stats.resamples import Resamples
 from faultpath.system import Status
 from faultpath_paper.cells import Cell
 from faultpath_paper.detection import enough
-from faultpath_paper.results import NotRun, Quantity, Results, decisive
+from faultpath_paper.results import NotRun, Quantity, Results, decisive, quantity
 
 Pair: TypeAlias = tuple[Cell, Cell]
 Effect: TypeAlias = Callable[[Pairs, Resamples], Contrast]
@@ -61,26 +61,25 @@ def contrast(
     return effect(pairs, results.resamples(pairs))
 
 
+@quantity
 def success(
-    first: Cell, second: Cell, effect: Effect = succeeded, *, other_noise: bool = False
-) -> Quantity:
+    results: Results,
+    first: Cell,
+    second: Cell,
+    effect: Effect = succeeded,
+    *,
+    other_noise: bool = False,
+) -> Contrast:
     """Return the difference in success, or other ends; `other_noise` as in `Results.pairs`."""
-
-    def quantity(results: Results) -> Contrast:
-        shown = contrast(results, first, second, effect, other_noise=other_noise)
-        return decisive(shown, TELLING_PP)
-
-    return quantity
+    shown = contrast(results, first, second, effect, other_noise=other_noise)
+    return decisive(shown, TELLING_PP)
 
 
-def rate(cell: Cell) -> Quantity:
+@quantity
+def rate(results: Results, cell: Cell) -> Contrast:
     """Return the success of a cell in percent."""
-
-    def quantity(results: Results) -> Contrast:
-        pairs = results.pairs(cell, cell)
-        return decisive(success_rate(pairs.ended(Status.SUCCESS)[0], results.resamples(pairs)))
-
-    return quantity
+    pairs = results.pairs(cell, cell)
+    return decisive(success_rate(pairs.ended(Status.SUCCESS)[0], results.resamples(pairs)))
 
 
 def crashes(first: Cell, second: Cell) -> Quantity:
@@ -93,29 +92,23 @@ def timeouts(first: Cell, second: Cell) -> Quantity:
     return success(first, second, ended(Status.TIMEOUT))
 
 
-def time(first: Cell, second: Cell) -> Quantity:
+@quantity
+def time(results: Results, first: Cell, second: Cell) -> Contrast:
     """Return the median difference in time over jointly successful scenes."""
-
-    def quantity(results: Results) -> Contrast:
-        pairs = results.pairs(first, second)
-        one, two = pairs.ended(Status.SUCCESS)
-        both = one & two
-        if not both.any():
-            raise NotRun(f"a scene in which both {first} and {second} succeed")
-        return decisive(median_effect(*pairs.time_s, both, results.resamples(pairs)))
-
-    return quantity
+    pairs = results.pairs(first, second)
+    one, two = pairs.ended(Status.SUCCESS)
+    both = one & two
+    if not both.any():
+        raise NotRun(f"a scene in which both {first} and {second} succeed")
+    return decisive(median_effect(*pairs.time_s, both, results.resamples(pairs)))
 
 
-def combined(*terms: tuple[float, Pair], effect: Effect = succeeded) -> Quantity:
+@quantity
+def combined(results: Results, *terms: tuple[float, Pair], effect: Effect = succeeded) -> Contrast:
     """Return a weighted sum of differences over common scenes, on shared resamples."""
-
-    def quantity(results: Results) -> Contrast:
-        contrasts = together(results, *(pair for _, pair in terms), effect=effect)
-        summed = weighted_sum([weight for weight, _ in terms], contrasts)
-        return decisive(summed, TELLING_PP if summed.unit == "pp" else None)
-
-    return quantity
+    contrasts = together(results, *(pair for _, pair in terms), effect=effect)
+    summed = weighted_sum([weight for weight, _ in terms], contrasts)
+    return decisive(summed, TELLING_PP if summed.unit == "pp" else None)
 
 
 def together(results: Results, *pairs: Pair, effect: Effect = succeeded) -> tuple[Contrast, ...]:
@@ -185,14 +178,11 @@ def _break_even(correct: Floats, faulty: Floats) -> Floats:
     return percent
 
 
-def greater_effect(repair: Repair) -> Quantity:
+@quantity
+def greater_effect(results: Results, repair: Repair) -> Contrast:
     """Return the greater of a repair's two effects: with it the repair is behind throughout."""
-
-    def quantity(results: Results) -> Contrast:
-        tradeoff = crossing(results, repair)
-        value = max(tradeoff.correct.value, tradeoff.faulty.value)
-        draws = np.maximum(tradeoff.correct.draws, tradeoff.faulty.draws)
-        n_scenes = tradeoff.correct.n_scenes
-        return decisive(Contrast(value, "pp", n_scenes, draws=draws, against_zero=False))
-
-    return quantity
+    tradeoff = crossing(results, repair)
+    value = max(tradeoff.correct.value, tradeoff.faulty.value)
+    draws = np.maximum(tradeoff.correct.draws, tradeoff.faulty.draws)
+    n_scenes = tradeoff.correct.n_scenes
+    return decisive(Contrast(value, "pp", n_scenes, draws=draws, against_zero=False))

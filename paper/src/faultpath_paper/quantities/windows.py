@@ -12,7 +12,7 @@ from faultpath.stats.contrast import Contrast, weighted_sum
 from faultpath.stats.inputs import Numbers, by_scene_and_seed
 from faultpath.stats.resamples import Resamples, quantiles
 from faultpath_paper.evidence.table import QUANTITIES, EvidenceTable, Measured, Measurement
-from faultpath_paper.results import NotRun, Quantity, Results, Undecidable, decisive
+from faultpath_paper.results import NotRun, Results, Undecidable, decisive, quantity
 
 
 class WindowQuantiles:
@@ -59,56 +59,46 @@ TELLING_SHARE = 0.2
 """A share of a median whose change a run must be able to detect for its absence to say anything."""
 
 
-def median(subject: Subject) -> Quantity:
+@quantity
+def median(results: Results, subject: Subject) -> Contrast:
     """Return the median of a subject."""
-
-    def quantity(results: Results) -> Contrast:
-        (one,) = joint_quantiles(results, 0.5, subject)
-        return decisive(replace(one, against_zero=False))
-
-    return quantity
+    (one,) = joint_quantiles(results, 0.5, subject)
+    return decisive(replace(one, against_zero=False))
 
 
-def difference_of_quantiles(first: Subject, second: Subject, q: float = 0.5) -> Quantity:
+@quantity
+def difference_of_quantiles(
+    results: Results, first: Subject, second: Subject, q: float = 0.5
+) -> Contrast:
     """Return a quantile of `first` minus that of `second`."""
-
-    def quantity(results: Results) -> Contrast:
-        one, two = joint_quantiles(results, q, first, second)
-        return decisive(weighted_sum([1, -1], [one, two]), TELLING_SHARE * two.value)
-
-    return quantity
+    one, two = joint_quantiles(results, q, first, second)
+    return decisive(weighted_sum([1, -1], [one, two]), TELLING_SHARE * two.value)
 
 
+@quantity
 def difference_of_changes(
-    first: tuple[Subject, Subject], second: tuple[Subject, Subject], *, size: bool
-) -> Quantity:
+    results: Results, first: tuple[Subject, Subject], second: tuple[Subject, Subject], *, size: bool
+) -> Contrast:
     """Return how much more the median changes over `first`, from one to the next, than `second`.
 
     `size`: changes are compared whatever their sign.
     """
-
-    def quantity(results: Results) -> Contrast:
-        ends = joint_quantiles(results, 0.5, *first, *second)
-        changes = [weighted_sum([-1, 1], ends[:2]), weighted_sum([-1, 1], ends[2:])]
-        if size:
-            changes = [replace(c, value=abs(c.value), draws=np.abs(c.draws)) for c in changes]
-        return decisive(weighted_sum([1, -1], changes))
-
-    return quantity
+    ends = joint_quantiles(results, 0.5, *first, *second)
+    changes = [weighted_sum([-1, 1], ends[:2]), weighted_sum([-1, 1], ends[2:])]
+    if size:
+        changes = [replace(c, value=abs(c.value), draws=np.abs(c.draws)) for c in changes]
+    return decisive(weighted_sum([1, -1], changes))
 
 
-def ratio(first: Subject, second: Subject) -> Quantity:
+@quantity
+def ratio(results: Results, first: Subject, second: Subject) -> Contrast:
     """Return the median of `first` over that of `second`."""
-
-    def quantity(results: Results) -> Contrast:
-        one, two = joint_quantiles(results, 0.5, first, second)
-        if not (two.value > 0 and bool((two.draws > 0).all())):
-            raise Undecidable("the median that is divided by is 0")
-        draws = one.draws / two.draws
-        value = one.value / two.value
-        return decisive(replace(one, value=value, draws=draws, unit="times", against_zero=False))
-
-    return quantity
+    one, two = joint_quantiles(results, 0.5, first, second)
+    if not (two.value > 0 and bool((two.draws > 0).all())):
+        raise Undecidable("the median that is divided by is 0")
+    draws = one.draws / two.draws
+    value = one.value / two.value
+    return decisive(replace(one, value=value, draws=draws, unit="times", against_zero=False))
 
 
 def joint_quantiles(results: Results, q: float, *subjects: Subject) -> list[Contrast]:
