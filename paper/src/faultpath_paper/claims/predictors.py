@@ -4,7 +4,7 @@ from itertools import combinations
 
 from faultpath_paper.cells import Cell, Printed, of_seed, published
 from faultpath_paper.claims.rules import ABOVE, BELOW, NO_DIFFERENCE, NO_LOSS, at_least, by_point
-from faultpath_paper.claims.statement import Statement, Statements
+from faultpath_paper.claims.statement import Statements, stated
 from faultpath_paper.pages import table_1
 from faultpath_paper.quantities.differences import crashes, success, time, timeouts
 from faultpath_paper.quantities.windows import Subject, difference_of_quantiles, ratio
@@ -49,14 +49,14 @@ def _clearance(cell: Cell, what: str) -> str:
 
 CLAIMS: dict[str, Statements] = {
     "C01": (
-        Statement(
+        stated(
             "median common error of DKI over that of the true-parameter model",
             ratio(_error(table_1.DKI), _error(table_1.TRUE_PARAMETER)),
             at_least(5),
             Printed(_PAPER["error_span"]),
         ),
         *(
-            Statement(
+            stated(
                 f"median common error of {NAMES[worse]} minus that of {NAMES[better]}",
                 difference_of_quantiles(_error(worse), _error(better)),
                 by_point(1),
@@ -66,7 +66,7 @@ CLAIMS: dict[str, Statements] = {
         ),
     ),
     "C02": tuple(
-        Statement(
+        stated(
             f"success of {NAMES[first]} minus {NAMES[second]}",
             success(of_seed(first), of_seed(second)),
             NO_DIFFERENCE,
@@ -75,7 +75,7 @@ CLAIMS: dict[str, Statements] = {
         for first, second in combinations(table_1.PREDICTORS, 2)
     ),
     "C03": (
-        Statement(
+        stated(
             "median difference in time where both succeed, DKI minus WM-A",
             time(table_1.DKI, table_1.WM_A),
             ABOVE,
@@ -84,7 +84,7 @@ CLAIMS: dict[str, Statements] = {
     ),
     "C04": (
         *(
-            Statement(
+            stated(
                 _clearance(cell, "crash rate"),
                 crashes(seen, cell),
                 BELOW,
@@ -93,7 +93,7 @@ CLAIMS: dict[str, Statements] = {
             for cell, seen in SEEN.items()
         ),
         *(
-            Statement(
+            stated(
                 _clearance(cell, "timeout rate"),
                 timeouts(seen, cell),
                 NO_LOSS,

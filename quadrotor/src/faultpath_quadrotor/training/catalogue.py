@@ -101,6 +101,11 @@ GROUPS: dict[str, tuple[ModelEntry, ...]] = {
 }
 
 
+def pools_of(name: str) -> tuple[str, ...]:
+    """Return the pools that a model above is fitted on."""
+    return next(entry.pools for entry in ALL if entry.name == name)
+
+
 def choose(names: Sequence[str], seeds: Sequence[int] = ()) -> tuple[FitJob, ...]:
     """Return the jobs of some models or groups, each once, in the order of the catalogue.
 
