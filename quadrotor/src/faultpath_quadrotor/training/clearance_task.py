@@ -43,6 +43,13 @@ from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M
 
 PER_METRE = 10_000
 """Depths are stored in tenths of a millimetre, 16 bits each."""
+VALIDATION_FROM = 90
+"""Scenes of the training library from here on are never trained on: two of each topology."""
+POINTS = 96
+"""Points of an image that a minibatch takes, drawn anew each epoch."""
+KINK_M = 0.05
+"""Error at which the loss turns from quadratic to linear."""
+_CHUNK = 128
 
 
 class ClearanceRecipe(Frozen):
@@ -111,8 +118,10 @@ def collect(
 ) -> Path:
     """Make the data set in `folder` and return its file; see `make_pool`."""
     settings = settings or ClearanceRecipe()
-    library = load_library(settings.library)
-    parts = [PoolPart(f"{scene.index:03d}", 1, partial(draw, settings, scene)) for scene in library]
+    parts = [
+        PoolPart(f"{scene.index:03d}", 1, partial(draw, settings, scene))
+        for scene in load_library(settings.library)
+    ]
     return make_pool(folder, recipe(settings), parts, workers, progress)
 
 
@@ -182,16 +191,6 @@ def _points(recipe: ClearanceRecipe, image: Tensor, random: np.random.Generator)
     direction /= np.linalg.norm(direction, axis=0)
     around = direction * random.uniform(0, recipe.around_m, recipe.around)
     return torch.from_numpy(np.concatenate((over_view, about, around), 1)).float()
-
-
-VALIDATION_FROM = 90
-"""Scenes of the training library from here on are never trained on: two of each topology."""
-POINTS = 96
-"""Points of an image that a minibatch takes, drawn anew each epoch."""
-KINK_M = 0.05
-"""Error at which the loss turns from quadratic to linear."""
-
-_CHUNK = 128
 
 
 class ClearanceTask(ModelTask):
@@ -287,11 +286,9 @@ def censored_loss(estimate: Tensor, truth: Tensor) -> Tensor:
 @torch.no_grad()
 def predict(model: ClearanceModel, samples: Samples) -> Tensor:
     """Return the model's clearance at all points of all images, `[I, Q]`, m."""
-    estimates = []
-    for first in range(0, len(samples), _CHUNK):
-        part = samples.take(torch.arange(first, min(first + _CHUNK, len(samples))))
-        estimates.append(model.query(model.encode(part.depth_m()), part.points.movedim(1, 0)))
-    return torch.cat(estimates)
+    parts = map(samples.take, torch.arange(len(samples)).split(_CHUNK))
+    estimates = (model.query(model.encode(p.depth_m()), p.points.movedim(1, 0)) for p in parts)
+    return torch.cat(list(estimates))
 
 
 def _mirror(depth: Tensor, points: Tensor, mirrored: Tensor) -> tuple[Tensor, Tensor]:
