@@ -2,11 +2,12 @@
 
 from itertools import combinations
 
+from faultpath.system import Status
 from faultpath_paper.cells import Cell, Printed, of_seed, published
 from faultpath_paper.claims.rules import ABOVE, BELOW, NO_DIFFERENCE, NO_LOSS, at_least, by_point
 from faultpath_paper.claims.statement import Statements, stated
 from faultpath_paper.pages import table_1
-from faultpath_paper.quantities.differences import crashes, success, time, timeouts
+from faultpath_paper.quantities.differences import ended, success, time
 from faultpath_paper.quantities.windows import Subject, difference_of_quantiles, ratio
 
 NAMES = {
@@ -41,10 +42,6 @@ def _error(cell: Cell) -> Subject:
 def _paper(first: Cell, second: Cell, what: str, times: float = 1.0) -> Printed:
     one, two = (_PAPER[_KEYS[cell]][what] for cell in (first, second))
     return Printed(times * (one - two))
-
-
-def _clearance(cell: Cell, what: str) -> str:
-    return f"{what} of {NAMES[cell]} with ground-truth clearance minus without"
 
 
 CLAIMS: dict[str, Statements] = {
@@ -82,24 +79,14 @@ CLAIMS: dict[str, Statements] = {
             Printed(_PAPER["paired_time_minus_WM-A_s"]["DKI"]["median"]),
         ),
     ),
-    "C04": (
-        *(
-            stated(
-                _clearance(cell, "crash rate"),
-                crashes(seen, cell),
-                BELOW,
-                _paper(seen, cell, "crash"),
-            )
-            for cell, seen in SEEN.items()
-        ),
-        *(
-            stated(
-                _clearance(cell, "timeout rate"),
-                timeouts(seen, cell),
-                NO_LOSS,
-                _paper(seen, cell, "timeout"),
-            )
-            for cell, seen in SEEN.items()
-        ),
+    "C04": tuple(
+        stated(
+            f"{end.value} rate of {NAMES[cell]} with ground-truth clearance minus without",
+            success(seen, cell, ended(end)),
+            rule,
+            _paper(seen, cell, end.value),
+        )
+        for end, rule in ((Status.CRASH, BELOW), (Status.TIMEOUT, NO_LOSS))
+        for cell, seen in SEEN.items()
     ),
 }

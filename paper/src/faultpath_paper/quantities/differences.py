@@ -18,7 +18,7 @@ from faultpath.stats.resamples import Resamples
 from faultpath.system import Status
 from faultpath_paper.cells import Cell
 from faultpath_paper.detection import enough
-from faultpath_paper.results import NotRun, Quantity, Results, decisive, quantity
+from faultpath_paper.results import NotRun, Results, decisive, quantity
 
 Pair: TypeAlias = tuple[Cell, Cell]
 Effect: TypeAlias = Callable[[Pairs, Resamples], Contrast]
@@ -80,16 +80,6 @@ def rate(results: Results, cell: Cell) -> Contrast:
     """Return the success of a cell in percent."""
     pairs = results.pairs(cell, cell)
     return decisive(success_rate(pairs.ended(Status.SUCCESS)[0], results.resamples(pairs)))
-
-
-def crashes(first: Cell, second: Cell) -> Quantity:
-    """Return the difference in crashes."""
-    return success(first, second, ended(Status.CRASH))
-
-
-def timeouts(first: Cell, second: Cell) -> Quantity:
-    """Return the difference in timeouts."""
-    return success(first, second, ended(Status.TIMEOUT))
 
 
 @quantity

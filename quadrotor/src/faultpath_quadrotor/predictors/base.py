@@ -65,6 +65,11 @@ class PredictorInputs:
             )
         return self.delivered[read]
 
+    @property
+    def hover_thrust(self) -> Tensor:
+        """Collective thrust that holds the vehicle if the calibration is right, N, `[S]`."""
+        return (self["mass", "trim"] * GRAVITY_MPS2 / self["thrust_scale", "trim"])[:, 0]
+
     def take(self, scenes: Sequence[int] | Tensor) -> "PredictorInputs":
         """Return the inputs of some scenes, in the order given."""
         index = torch.as_tensor(scenes)
@@ -84,11 +89,6 @@ class Rollout:
     """`[3, S, H, K]`, m/s, world frame."""
     final: State
     """State at the end of the horizon, batch `[S, K]`."""
-
-
-def hover_thrust(delivered: Delivered, place: str) -> Tensor:
-    """Return the collective thrust that holds the vehicle if a place's calibration is right, N."""
-    return delivered["mass", place] * GRAVITY_MPS2 / delivered["thrust_scale", place]
 
 
 class Predictor(ABC):

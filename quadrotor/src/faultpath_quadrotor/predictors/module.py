@@ -11,7 +11,6 @@ from faultpath_quadrotor.batching import Delivered, LaneModule
 from faultpath_quadrotor.predictors import Predictor
 from faultpath_quadrotor.predictors.base import (
     history,
-    hover_thrust,
     ports,
     predictor_inputs,
 )
@@ -37,7 +36,6 @@ class PredictorModule(LaneModule):
     @override
     def compute(self, readings: Delivered, step: int, memory: Roll) -> tuple[Outputs, Roll]:
         known = predictor_inputs(self._predictor.reads, lambda *read: readings[read])
-        hover = hover_thrust(known.delivered, "trim")[:, 0]
 
         def predict(candidates: Candidates) -> Predicted:
             rollouts = (
@@ -47,7 +45,7 @@ class PredictorModule(LaneModule):
             return Predicted(candidates.count, candidates.chunks, tuple(rollouts))
 
         motion = Query(predict, Predicted.motion, Predicted.moved)
-        return {"predicted_motion": motion, "hover_thrust": hover}, memory
+        return {"predicted_motion": motion, "hover_thrust": known.hover_thrust}, memory
 
 
 STEPS = 12  # paper, Section IV-A
