@@ -3,7 +3,7 @@
 from itertools import combinations
 
 from faultpath.system import Status
-from faultpath_paper.cells import Cell, Printed, of_seed, published
+from faultpath_paper.cells import Cell, Printed, of_seed
 from faultpath_paper.claims.rules import ABOVE, BELOW, NO_DIFFERENCE, NO_LOSS, at_least, by_point
 from faultpath_paper.claims.statement import Statements, stated
 from faultpath_paper.pages import table_1
@@ -18,15 +18,6 @@ NAMES = {
 }
 SEEN = {table_1.WM_A: table_1.WM_A_SEEN, table_1.TRUE_PARAMETER: table_1.TRUE_PARAMETER_SEEN}
 """Each with ground-truth clearance."""
-_PAPER = published("table_1_prediction_accuracy")
-_KEYS = {
-    table_1.DKI: "DKI",
-    table_1.WM_A: "WM-A",
-    table_1.WM_U: "WM-U",
-    table_1.TRUE_PARAMETER: "true-parameter",
-    table_1.WM_A_SEEN: "WM-A/true-clearance",
-    table_1.TRUE_PARAMETER_SEEN: "true-parameter/true-clearance",
-}
 WORSE_THAN = (
     (table_1.DKI, table_1.WM_A),
     (table_1.DKI, table_1.WM_U),
@@ -40,7 +31,7 @@ def _error(cell: Cell) -> Subject:
 
 
 def _paper(first: Cell, second: Cell, what: str, times: float = 1.0) -> Printed:
-    one, two = (_PAPER[_KEYS[cell]][what] for cell in (first, second))
+    one, two = (table_1.PAPER[table_1.KEYS[cell]][what] for cell in (first, second))
     return Printed(times * (one - two))
 
 
@@ -50,7 +41,7 @@ CLAIMS: dict[str, Statements] = {
             "median common error of DKI over that of the true-parameter model",
             ratio(_error(table_1.DKI), _error(table_1.TRUE_PARAMETER)),
             at_least(5),
-            Printed(_PAPER["error_span"]),
+            Printed(table_1.PAPER["error_span"]),
         ),
         *(
             stated(
@@ -76,7 +67,7 @@ CLAIMS: dict[str, Statements] = {
             "median difference in time where both succeed, DKI minus WM-A",
             time(table_1.DKI, table_1.WM_A),
             ABOVE,
-            Printed(_PAPER["paired_time_minus_WM-A_s"]["DKI"]["median"]),
+            Printed(table_1.PAPER["paired_time_minus_WM-A_s"]["DKI"]["median"]),
         ),
     ),
     "C04": tuple(
