@@ -48,10 +48,12 @@ def test_the_compiled_plant_is_the_portable_one(isa: str, seed: int) -> None:
 
 
 def test_what_the_kernel_does_not_cover_is_flown_in_torch(isa: str) -> None:
+    nominal = Vehicle.stack([VehicleParameters()] * 6)
+    two_axes = nominal.map(lambda part: part.unflatten(-1, (2, 3)))
     with native.using(isa):
-        for vehicle in (Vehicle.nominal(4, torch.float32), Vehicle.nominal((2, 3))):
+        for vehicle in (nominal.to(torch.float32), two_axes):
             plant = TorchPlant(vehicle)
-            still = torch.zeros(3, *vehicle.batch, dtype=vehicle.mass_kg.dtype)
+            still = torch.zeros(3, *vehicle.mass_kg.shape, dtype=vehicle.mass_kg.dtype)
             now = plant.start(State.hover(still, still[0]))
             end = plant.advance(now, vehicle.hover_command(), still.expand(5, *still.shape))
             assert end.state.position.dtype == vehicle.mass_kg.dtype

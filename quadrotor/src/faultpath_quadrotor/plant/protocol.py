@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
@@ -41,32 +40,11 @@ class Vehicle(Batched):
     """Linear drag along the body axes, [3, *b]."""
 
     @classmethod
-    def nominal(
-        cls, batch: int | Sequence[int] = (), dtype: torch.dtype = torch.float64
-    ) -> Vehicle:
-        """Return `batch` nominal vehicles (a count or a batch shape)."""
-        shape = (batch,) if isinstance(batch, int) else tuple(batch)
-        lanes = cls.stack([VehicleParameters()] * math.prod(shape), dtype)
-        return lanes.map(lambda x: x.view((*x.shape[:-1], *shape)))
-
-    @classmethod
-    def stack(
-        cls, parameters: Sequence[VehicleParameters], dtype: torch.dtype = torch.float64
-    ) -> Vehicle:
-        """Return the vehicles of a list as one batch, in its order."""
-        return cls(
-            **{
-                field.name: torch.tensor(
-                    np.array([getattr(p, field.name) for p in parameters]).T, dtype=dtype
-                ).contiguous()
-                for field in fields(cls)
-            }
-        )
-
-    @property
-    def batch(self) -> torch.Size:
-        """The batch shape `*b`."""
-        return self.mass_kg.shape
+    def stack(cls, parameters: Sequence[VehicleParameters]) -> Vehicle:
+        """Return the vehicles of a list as one batch, float64, in its order."""
+        names = [field.name for field in fields(cls)]
+        columns = (np.array([getattr(p, name) for p in parameters], np.float64) for name in names)
+        return cls(*(torch.from_numpy(column.T.copy()) for column in columns))
 
     @property
     def hover_thrust_n(self) -> Tensor:
@@ -76,7 +54,7 @@ class Vehicle(Batched):
     def hover_command(self) -> Tensor:
         """Return the command that holds a level vehicle at rest, [4, *b]."""
         thrust = self.hover_thrust_n
-        return torch.cat((thrust[None], torch.zeros(3, *self.batch).to(thrust)))
+        return torch.cat((thrust[None], torch.zeros(3, *thrust.shape).to(thrust)))
 
 
 CONTACT_EVERY = 5
