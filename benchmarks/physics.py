@@ -8,7 +8,7 @@ from faultpath_quadrotor import so3
 from faultpath_quadrotor.perception import DepthRenderer
 from faultpath_quadrotor.perception.camera import mounted
 from faultpath_quadrotor.plant import Plant, TorchPlant
-from faultpath_quadrotor.plant.vehicle_batch import Vehicle
+from faultpath_quadrotor.plant.protocol import Vehicle
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.scenes.scene import Scene
 from faultpath_quadrotor.state import State, padded_lanes

@@ -13,7 +13,6 @@ from faultpath_quadrotor.options import QuadrotorOptions
 from faultpath_quadrotor.perception import DepthClearance, DepthRenderer, mounted
 from faultpath_quadrotor.planners import AutoregressiveSampler, SamplerSettings, Scored, shift
 from faultpath_quadrotor.predictors import AnchoredPredictor, PredictorInputs
-from faultpath_quadrotor.predictors.base import hover_thrust
 from faultpath_quadrotor.predictors.rollout import rolling
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.state import State
@@ -68,7 +67,7 @@ def inputs() -> PredictorInputs:
 def commands() -> Tensor:
     """Return candidates about hover, `[H, 4, 1, K]`."""
     sampler = AutoregressiveSampler(SamplerSettings(candidates=CANDIDATES, horizon=HORIZON))
-    hover = hover_thrust(inputs().delivered, "trim")[:, 0]
+    hover = inputs().hover_thrust
     plan = torch.zeros(HORIZON, 4, 1)
     plan[:, 0] = hover
     with native.using(native.PORTABLE):  # the same numbers for every side
@@ -121,7 +120,7 @@ def _replans(goal: Tensor, clearance: Callable[[Tensor], Tensor]) -> Callable[[]
     `clearance` gives `[1, H, K]`, metres, along positions `[3, 1, H, K]`.
     """
     planner, roll, readings = QuadrotorOptions().build_planner(), rolling(model()), inputs()
-    hover = hover_thrust(readings.delivered, "trim")[:, 0]
+    hover = readings.hover_thrust
     plan, step = commands()[..., 0].clone(), 0
 
     def work() -> None:

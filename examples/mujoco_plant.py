@@ -21,8 +21,7 @@ from dataclasses import fields
 import mujoco
 import numpy as np
 import torch
-from faultpath_quadrotor.plant.protocol import Plant, PlantState
-from faultpath_quadrotor.plant.vehicle_batch import Vehicle
+from faultpath_quadrotor.plant.protocol import Plant, PlantState, Vehicle
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import (
     ARM_LENGTH_M,

@@ -17,7 +17,7 @@ from faultpath_quadrotor.predictors import KinematicIntegrator, Predictor, Predi
 from faultpath_quadrotor.predictors.kinematic import Residual
 from faultpath_quadrotor.predictors.network import Affine, draw_weights
 from faultpath_quadrotor.state import State
-from faultpath_quadrotor.training.collection import collect
+from faultpath_quadrotor.training.flight import collect
 from faultpath_quadrotor.training.predictor_task import error, scales
 from faultpath_quadrotor.training.windows import correct, predict, windows_of
 from safetensors.torch import load_file, save_file

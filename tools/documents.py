@@ -29,7 +29,7 @@ import schema_files
 import studies
 from blocks import IMAGES, REFERENCE, ROOT, RUNS, Picture, Wrong, copied, figures_of, kind_of, load
 from faultpath_paper import central, facts
-from faultpath_paper.report import short, words
+from faultpath_paper.report import terminal, words
 from pictures import digest, made_from, make_images, name_of
 from rendering import macros
 
@@ -51,7 +51,7 @@ NAMES = {
     "paper": paper_blocks,
     "phrases": phrases,
     "runs": run_blocks,
-    "short": short,
+    "terminal": terminal,
     "studies": studies,
     "words": words,
 }

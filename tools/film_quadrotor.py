@@ -7,7 +7,7 @@ from math import atan2, hypot
 
 import numpy as np
 from blocks import REFERENCE, Picture, Wrong, parsed
-from faultpath_quadrotor.scenes.soundness import GOAL_RADIUS_M
+from faultpath_quadrotor.scenes.library import GOAL_RADIUS_M
 from film import Film
 from film_flights import FLIGHTS, RUN, SHOWN, Flights
 from film_halves import CARD, PAD, SIDES, Half, Pace, Story, picture

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from blocks import ROOT, Picture, Run, Wrong, load
-from faultpath_quadrotor.checkpoint import shipped_folder
+from faultpath_quadrotor.models import shipped_folder
 from faultpath_quadrotor.training.catalogue import ALL, ModelEntry
 from rich.console import Console
 

@@ -13,7 +13,6 @@ import numpy as np
 import torch
 from faultpath_quadrotor.planners import CostWeights, SamplerSettings
 from faultpath_quadrotor.predictors import anchored
-from faultpath_quadrotor.predictors.base import hover_thrust
 from faultpath_quadrotor.predictors.kinematic import RATE_LAG_S
 from faultpath_quadrotor.predictors.network import LATENT, Affine, LatentNetwork
 from faultpath_quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2, RATE_LIMIT_RADPS
@@ -130,7 +129,7 @@ def positions(step: BatchModel) -> list[float]:
 
 def actions() -> tuple[Tensor, Tensor, Tensor, Tensor]:
     """Return centre, spread and bounds of the planner's commands, `[4]` each."""
-    hover = float(hover_thrust(planning.inputs().delivered, "trim"))
+    hover = float(planning.inputs().hover_thrust)
     sampler = SamplerSettings()
     centre = torch.tensor([hover, 0.0, 0.0, 0.0])
     sigma = torch.tensor([sampler.thrust_sigma * hover, *sampler.rate_sigma_radps])

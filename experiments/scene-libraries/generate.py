@@ -3,8 +3,8 @@
 from math import atan2, dist
 from typing import Any
 
+from faultpath_quadrotor.scenes.library import clearance_m
 from faultpath_quadrotor.scenes.scene import Box, Cylinder, Point, Scene, Topology
-from faultpath_quadrotor.scenes.soundness import clearance_m
 from faultpath_quadrotor.vehicle import draw
 from feasibility import END_CLEARANCE_M, FreeLattice
 from layout import Layout

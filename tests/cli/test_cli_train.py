@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 from cli_runs import ROOT, faultpath
-from faultpath_quadrotor import checkpoint
+from faultpath_quadrotor import models
 from faultpath_quadrotor.training import catalogue, jobs
 
 from faultpath.cli.main import INTERRUPTED
@@ -35,7 +35,7 @@ def test_everything_is_fitted_and_ends_in_a_table() -> None:
     rows = [line.split() for line in ended.out.splitlines()]
     (head,) = (row for row in rows if row[:2] == ["model", "seed"])
     assert head[2:] == ["parameters", "loss", "validation", "time"]
-    card = read_card(Path("runs/train/one+dcc-1.safetensors"), checkpoint.ModelCard)
+    card = read_card(Path("runs/train/one+dcc-1.safetensors"), models.ModelCard)
     (row,) = (row for row in rows if row[:2] == ["one+dcc", "1"])
     assert row[2:4] == ["32", f"{card.training_loss[-1]:.4g}"]
     assert row[4:6] == ["error", f"{card.final['error']:.4g}"]
@@ -53,13 +53,13 @@ def test_names_seeds_and_folders_are_heeded(tmp_path: Path) -> None:
 def test_the_same_again_fits_nothing_and_what_is_finished_is_shipped(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(checkpoint, "shipped_folder", lambda: tmp_path / "package")
+    monkeypatch.setattr(models, "shipped_folder", lambda: tmp_path / "package")
     card = Path("runs/train/one-0.json")
     assert _train("one").status == 0
     before = card.read_bytes()
     assert _train("one", "--ship").status == 0
     assert card.read_bytes() == before
-    assert checkpoint.checkpoint_path("one", 0).parent == tmp_path / "package"
+    assert models.checkpoint_path("one", 0).parent == tmp_path / "package"
     monkeypatch.setattr(Toy, "count", 149)
     assert "one-0 is fitted again: samples" in _train("one").out
 
@@ -104,7 +104,7 @@ def test_missing_flights_are_collected_once_what_they_need_is_fitted(
 def test_closed_loop_flights_without_their_predictor_are_refused_before_any_fit(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(checkpoint, "shipped_folder", lambda: tmp_path)
+    monkeypatch.setattr(models, "shipped_folder", lambda: tmp_path)
     monkeypatch.setattr(catalogue, "ALL", (flying("flown", "trajectory", "one"), entry("one")))
     _train("flown", "one").refused("no checkpoint of 'one' with seed 0")
     assert list(tmp_path.iterdir()) == []

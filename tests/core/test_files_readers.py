@@ -29,7 +29,7 @@ def _named(place: str) -> Any:
 
 
 def _card(path: Path) -> object:
-    return read_card(path, _named("faultpath_quadrotor.checkpoint:ModelCard"))
+    return read_card(path, _named("faultpath_quadrotor.models:ModelCard"))
 
 
 def _shard(path: Path) -> object:

@@ -7,7 +7,7 @@ from faultpath_paper import central
 from faultpath_paper.answers import RUN, Ledger, Reproduction, shipped_ledger
 from faultpath_paper.cells import published_claims
 from faultpath_paper.claims import SUBJECTS
-from faultpath_paper.report.short import apart, by_kind, by_subject
+from faultpath_paper.report.terminal import apart, by_kind, by_subject
 from faultpath_paper.report.words import headline, is_non_detection
 
 from faultpath.stats.estimate import Sign

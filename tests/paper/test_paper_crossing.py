@@ -8,7 +8,7 @@ from faultpath_paper.cells import Cell
 from faultpath_paper.claims.paying import judge
 from faultpath_paper.claims.rules import Bound
 from faultpath_paper.pages.table_5 import REPAIRS
-from faultpath_paper.quantities.crossing import crossing, greater_effect
+from faultpath_paper.quantities.differences import crossing, greater_effect
 from faultpath_paper.results import Results
 from toy_runs import NOTHING, trials
 

@@ -1,8 +1,12 @@
 """Quantiles over windows: what they are, and that whole scenes are resampled."""
 
+from typing import Any, cast
+
 import numpy as np
 import pytest
-from faultpath_paper.quantities.window_quantiles import WindowQuantiles
+from faultpath_paper.evidence.table import Measured, Measurement, Recording
+from faultpath_paper.quantities.windows import WindowQuantiles, median
+from faultpath_paper.results import Results
 
 from faultpath.core.streams import generator
 from faultpath.stats.contrast import change
@@ -19,13 +23,13 @@ def quantile_difference(first, second, scenes, **few):
     return change(drawn.value(second, 0.5), drawn.value(first, 0.5))
 
 
-def windows(n_scenes=20, each=8, seeds=1):
+def windows(n_scenes=20, each=8):
     """Return values and scenes; windows of a scene lie close together."""
     stream = generator("test-windows", "clustered", 0)
-    level = stream.normal(size=(n_scenes, 1, seeds))
-    values = np.exp(level + 0.1 * stream.normal(size=(n_scenes, each, seeds)))
+    level = stream.normal(size=(n_scenes, 1))
+    values = np.exp(level + 0.1 * stream.normal(size=(n_scenes, each)))
     scenes = [f"s{i:02d}" for i in range(n_scenes) for _ in range(each)]
-    return values.reshape(-1, seeds), scenes
+    return values.reshape(-1), scenes
 
 
 @pytest.mark.parametrize("q", [0.1, 0.5, 0.9])
@@ -51,10 +55,15 @@ def test_draws_are_the_quantiles_of_the_windows_of_the_resampled_scenes_in_any_o
 
 
 def test_seeds_are_averaged_after_their_quantiles():
-    values, scenes = windows(seeds=3)
-    found = quantile_estimate(values, scenes, **FEW)
-    assert found.per_seed == tuple(np.median(values, axis=0))
-    assert found.value == pytest.approx(np.mean(found.per_seed), rel=1e-12)
+    recording = Recording(library="held-out", variant="dki")
+    (_, scenes), table = windows(), {}
+    for seed in range(3):
+        values = generator("test-windows", "seeds", seed).normal(size=len(scenes))
+        own = Measurement(recording=recording, quantity="position-error", subject="dki", seed=seed)
+        table[own] = Measured(tuple(scenes), np.arange(len(scenes)), values)
+    found = median(tuple(table))(Results(cast(Any, None), table, ""))
+    assert found.per_seed == tuple(np.median(part.values) for part in table.values())
+    assert found.value == pytest.approx(np.mean(found.per_seed), abs=1e-8)
     assert found.n_seeds == 3
 
 
@@ -74,7 +83,6 @@ def test_a_difference_is_paired_and_mirrors_when_the_variants_are_swapped():
 @pytest.mark.parametrize(
     "ask",
     [
-        lambda values, scenes: quantile_estimate(values, scenes, 1.0),
         lambda values, scenes: quantile_estimate(values[:-1], scenes),
         lambda values, scenes: quantile_estimate(np.full_like(values, np.nan), scenes),
         lambda values, scenes: quantile_difference(values, values[:-1], scenes),

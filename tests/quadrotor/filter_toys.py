@@ -11,8 +11,9 @@ from faultpath_quadrotor.estimators.eskf import Filtered
 from faultpath_quadrotor.estimators.kalman import Trust
 from faultpath_quadrotor.estimators.sensors import SENSORS, SensorErrors, readings, sensors
 from faultpath_quadrotor.plant import TorchPlant
-from faultpath_quadrotor.plant.vehicle_batch import Vehicle
+from faultpath_quadrotor.plant.protocol import Vehicle
 from faultpath_quadrotor.state import State
+from faultpath_quadrotor.vehicle import VehicleParameters
 from torch import Tensor
 
 LANES = 32
@@ -22,7 +23,7 @@ BIASED = SENSORS[:2]
 def courses(steps: int) -> tuple[list[State], list[Mapping[str, Tensor]]]:
     """Return the states at each step, and what exact sensors read, of 32 vehicles from rest."""
     draw = np.random.default_rng(7)
-    plant = TorchPlant(Vehicle.nominal(LANES))
+    plant = TorchPlant(Vehicle.stack([VehicleParameters()] * LANES))
     yaw = torch.from_numpy(draw.uniform(-3, 3, LANES))
     now = plant.start(State.hover(torch.zeros(3, LANES, dtype=torch.float64), yaw))
     passed, states, read = [now.state] * 6, list[State](), list[Mapping[str, Tensor]]()

@@ -25,10 +25,10 @@ from faultpath_quadrotor.perception import DepthClearance, DepthRenderer, mounte
 from faultpath_quadrotor.planners import CEM, MPPI, NavigationCost, Scored
 from faultpath_quadrotor.planners.mppi import softmax
 from faultpath_quadrotor.planners.sampler import AutoregressiveSampler, BundledSampler
-from faultpath_quadrotor.plant.world import World
+from faultpath_quadrotor.plant.module import World
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.predictors import Predictor, PredictorInputs
-from faultpath_quadrotor.predictors.predictor_inputs import history, predictor_inputs
+from faultpath_quadrotor.predictors.base import history, predictor_inputs
 from faultpath_quadrotor.predictors.rollout import Rollout, rolling
 from faultpath_quadrotor.reconstruction import Reconstruction
 from faultpath_quadrotor.scenes.field import DistanceField

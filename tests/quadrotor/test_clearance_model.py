@@ -9,24 +9,25 @@ import torch
 from faultpath_quadrotor import native
 from faultpath_quadrotor.perception.camera import HEIGHT, RANGE_M, WIDTH
 from faultpath_quadrotor.perception.clearance import ClearanceModel
-from faultpath_quadrotor.perception.depth_clearance import (
-    DepthClearance,
-    PerceptionSettings,
-    in_view,
-    near,
-)
 from faultpath_quadrotor.perception.labels import (
     HIGHEST_M,
     LOWEST_M,
     between_pixels,
     visible_distance,
 )
+from faultpath_quadrotor.perception.module import (
+    DepthClearance,
+    PerceptionSettings,
+    in_view,
+    near,
+)
 from faultpath_quadrotor.scenes.library import load_library
-from faultpath_quadrotor.training import clearance_data
-from faultpath_quadrotor.training.clearance_data import ClearanceRecipe, Samples
+from faultpath_quadrotor.training import clearance_task
 from faultpath_quadrotor.training.clearance_task import (
     VALIDATION_FROM,
+    ClearanceRecipe,
     ClearanceTask,
+    Samples,
     censored_loss,
 )
 
@@ -90,12 +91,12 @@ SMALL = ClearanceRecipe(images=1, in_view=16, near_surface=16, around=8)
 
 @pytest.fixture(scope="module")
 def collected(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return clearance_data.collect(tmp_path_factory.mktemp("data"), SMALL, workers=0)
+    return clearance_task.collect(tmp_path_factory.mktemp("data"), SMALL, workers=0)
 
 
 @pytest.fixture(scope="module")
 def samples(collected: Path) -> Samples:
-    return clearance_data.read(collected)
+    return clearance_task.read(collected)
 
 
 def test_labels_are_those_of_the_stored_images_and_samples_of_recipe_and_scene_alone(samples):
@@ -106,19 +107,19 @@ def test_labels_are_those_of_the_stored_images_and_samples_of_recipe_and_scene_a
     assert between_pixels(samples.points.movedim(1, 0)).float().mean() > 0.4
     assert 0.2 < (samples.clearance < 0).float().mean() < 0.5
     scene = load_library("training")[42]
-    again = clearance_data.draw(SMALL, scene)
+    again = clearance_task.draw(SMALL, scene)
     kept = samples.take((samples.scene == 42).nonzero()[:, 0])
     for field in fields(Samples):
         assert torch.equal(getattr(kept, field.name), getattr(again, field.name)), field.name
-    other = clearance_data.draw(SMALL.model_copy(update={"seed": 1}), scene)
+    other = clearance_task.draw(SMALL.model_copy(update={"seed": 1}), scene)
     assert not torch.equal(other.points, again.points)
 
 
 def test_another_recipe_is_refused(collected: Path):
     with pytest.raises(UserError, match="collected with another 'seed'"):
-        clearance_data.collect(collected.parent, SMALL.model_copy(update={"seed": 9}))
+        clearance_task.collect(collected.parent, SMALL.model_copy(update={"seed": 9}))
     with pytest.raises(UserError, match="collected with another 'settings'"):
-        clearance_data.collect(collected.parent, SMALL.model_copy(update={"images": 2}))
+        clearance_task.collect(collected.parent, SMALL.model_copy(update={"images": 2}))
 
 
 def test_validation_scenes_are_never_trained_on(samples: Samples):

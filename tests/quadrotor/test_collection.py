@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 from faultpath_quadrotor.platform import PLATFORM, FlightSettings
-from faultpath_quadrotor.training import collection, flight
-from faultpath_quadrotor.training.collection import collect
-from faultpath_quadrotor.training.flight import fly
+from faultpath_quadrotor.training import flight
+from faultpath_quadrotor.training.flight import collect, fly
 from faultpath_quadrotor.training.recorded import COMPONENTS, SIGNALS, FlightData
 from faultpath_quadrotor.vehicle import COLLECTIVE_MAX_N, CONTROL_RATE_HZ, RATE_LIMIT_RADPS
 
@@ -24,7 +23,7 @@ def short():
     """Ten steps an episode and three episodes a shard, in this process."""
     with pytest.MonkeyPatch.context() as patch:
         of_length(patch, 10)
-        patch.setattr(collection, "BATCH", 3)
+        patch.setattr(flight, "BATCH", 3)
         yield
 
 
@@ -48,7 +47,7 @@ def test_the_nominal_pool_is_still_and_the_wind_pool_has_the_collection_s_wind(p
 
 
 def test_the_result_does_not_depend_on_the_shards(pools, tmp_path, monkeypatch):
-    monkeypatch.setattr(collection, "BATCH", 4)
+    monkeypatch.setattr(flight, "BATCH", 4)
     again = collect(tmp_path, workers=0, episodes=SMALL)
     for name, path in pools.items():
         one, two = FlightData.read(path), FlightData.read(again[name])

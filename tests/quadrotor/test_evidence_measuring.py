@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from faultpath_paper.evidence import recording
+from faultpath_paper.evidence import quantities
 from faultpath_paper.evidence.quantities import measure
 from faultpath_paper.evidence.table import Measurement, Recording, read_evidence, write_evidence
 from faultpath_quadrotor.scenes.library import SceneLibrary, as_text
@@ -24,7 +24,7 @@ def library(tmp_path_factory) -> str:
 def small_blocks():
     """One scene a block, so that two scenes are two pieces of work."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(recording, "BLOCK", 1)
+        patch.setattr(quantities, "BLOCK", 1)
         yield
 
 

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 import torch
 from faultpath_paper.evidence.inputs import with_shuffled_history
-from faultpath_paper.evidence.quantities import measured
-from faultpath_paper.evidence.recording import STRIDE, RecordedWindows
+from faultpath_paper.evidence.quantities import STRIDE, RecordedWindows, measured
 from faultpath_paper.evidence.table import Measurement, Recording
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.training.flight import fly

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 import torch
-from faultpath_quadrotor import checkpoint
-from faultpath_quadrotor.checkpoint import ModelCard, checkpoint_path
+from faultpath_quadrotor import models
+from faultpath_quadrotor.models import ModelCard, checkpoint_path
 from faultpath_quadrotor.training import jobs
 from faultpath_quadrotor.training.fitting import fit, journal_path
 from fitting_toys import Net, Toy
@@ -142,7 +142,7 @@ def test_a_loss_that_is_no_number_stops_with_the_last_good_state(tmp_path: Path)
 
 def test_a_shipped_model_is_found_and_is_the_fitted_one(tmp_path, monkeypatch):
     fitted = fit(Toy(), tmp_path, notice=_silent)
-    monkeypatch.setattr(checkpoint, "shipped_folder", lambda: tmp_path / "package")
+    monkeypatch.setattr(models, "shipped_folder", lambda: tmp_path / "package")
     jobs.ship(fitted)
     task, module = Toy(), Net(seed=7)
     card = fill(module, checkpoint_path("toy", 0), ModelCard)

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from faultpath_quadrotor.training import catalogue, trajectories
 from faultpath_quadrotor.training.catalogue import ALL, GROUPS, FitJob, choose, stages
-from faultpath_quadrotor.training.collection import EPISODES, recipe
 from faultpath_quadrotor.training.fitting import fit, journal_path
+from faultpath_quadrotor.training.flight import EPISODES, recipe
 from faultpath_quadrotor.training.jobs import missing_pools, run_jobs
 from faultpath_quadrotor.training.pool import Provenance
 from fitting_toys import Toy, entry

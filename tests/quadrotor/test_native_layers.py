@@ -3,8 +3,8 @@
 import pytest
 import torch
 from faultpath_quadrotor import native
-from faultpath_quadrotor.angles import sine_cosine
 from faultpath_quadrotor.predictors.network import affine
+from faultpath_quadrotor.so3 import sine_cosine
 
 
 @torch.inference_mode()

@@ -4,8 +4,8 @@ import pytest
 import torch
 from faultpath_quadrotor import native, so3
 from faultpath_quadrotor.plant import PlantState, TorchPlant
-from faultpath_quadrotor.plant.vehicle_batch import Vehicle
-from faultpath_quadrotor.plant.world import World
+from faultpath_quadrotor.plant.module import World
+from faultpath_quadrotor.plant.protocol import Vehicle
 from faultpath_quadrotor.scenes.field import DistanceField
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.scenes.scene import Box, Cylinder, Scene
@@ -48,10 +48,12 @@ def test_the_compiled_plant_is_the_portable_one(isa: str, seed: int) -> None:
 
 
 def test_what_the_kernel_does_not_cover_is_flown_in_torch(isa: str) -> None:
+    nominal = Vehicle.stack([VehicleParameters()] * 6)
+    two_axes = nominal.map(lambda part: part.unflatten(-1, (2, 3)))
     with native.using(isa):
-        for vehicle in (Vehicle.nominal(4, torch.float32), Vehicle.nominal((2, 3))):
+        for vehicle in (nominal.to(torch.float32), two_axes):
             plant = TorchPlant(vehicle)
-            still = torch.zeros(3, *vehicle.batch, dtype=vehicle.mass_kg.dtype)
+            still = torch.zeros(3, *vehicle.mass_kg.shape, dtype=vehicle.mass_kg.dtype)
             now = plant.start(State.hover(still, still[0]))
             end = plant.advance(now, vehicle.hover_command(), still.expand(5, *still.shape))
             assert end.state.position.dtype == vehicle.mass_kg.dtype

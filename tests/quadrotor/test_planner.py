@@ -5,7 +5,6 @@ import torch
 from faultpath_quadrotor.options import QuadrotorOptions
 from faultpath_quadrotor.planners import AutoregressiveSampler, SamplerSettings, Scored
 from faultpath_quadrotor.predictors import KinematicIntegrator, PredictorInputs
-from faultpath_quadrotor.predictors.base import hover_thrust
 from faultpath_quadrotor.predictors.rollout import rolling
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import GRAVITY_MPS2, NOMINAL_DRAG_KGPS, RATE_LIMIT_RADPS
@@ -30,7 +29,7 @@ def free(positions):
 
 def replan(planner, inputs, plan, scenes, goal, clearance=free, seen=lambda search: None):
     """Return the plan `[H, 4, S]` that one step makes of another; `seen` gets each search."""
-    hover = hover_thrust(inputs.delivered, "trim")[:, 0]
+    hover = inputs.hover_thrust
     roll = rolling(KinematicIntegrator(drag=True, drag_kgps=NOMINAL_DRAG_KGPS))
     search = planner.init(plan, hover)
     for iteration in range(planner.iterations):
@@ -67,7 +66,7 @@ def test_candidates_are_bounded_evenly_around_hover():
 
 def test_trim_follows_the_supplied_calibration():
     planner = QuadrotorOptions().build_planner()
-    plan = planner.initial_plan(hover_thrust(planner_inputs(mass=1.1).delivered, "trim")[:, 0])
+    plan = planner.initial_plan(planner_inputs(mass=1.1).hover_thrust)
     assert torch.allclose(plan[:, 0], torch.tensor(1.1 * GRAVITY_MPS2))
 
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import torch
 from faultpath_quadrotor import so3
-from faultpath_quadrotor.plant import PlantState, TorchPlant, motors
-from faultpath_quadrotor.plant.vehicle_batch import Vehicle
+from faultpath_quadrotor.plant import PlantState, TorchPlant, torch_plant
+from faultpath_quadrotor.plant.protocol import Vehicle
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.vehicle import COLLECTIVE_MAX_N, GRAVITY_MPS2, VehicleParameters, draw
 from torch import Tensor
@@ -88,13 +88,13 @@ def spinning(dt_s: float) -> tuple[State, Tensor]:
     """Turn three free bodies for a second; return the end state and the inertia."""
     inertias = [(0.010, 0.010, 0.018), (0.008, 0.012, 0.018), (0.013, 0.009, 0.014)]
     vehicle = Vehicle.stack([VehicleParameters(inertia_kgm2=i) for i in inertias])
-    coupling = motors.gyroscopic_coupling(vehicle)
+    coupling = torch_plant.gyroscopic_coupling(vehicle)
     rate = column(4.0, -3.0, 5.0).expand(3, 3).clone()
     rotation = so3.exp(column(0.3, 0.2, -0.5)).expand(3, 3, 3).clone()
     for _ in range(round(1 / dt_s)):
-        free = motors.gyroscopic(coupling, rate)
+        free = torch_plant.gyroscopic(coupling, rate)
         still = torch.zeros_like(rate)
-        rotation, rate = motors.turn(rotation, rate, still, coupling, free, dt_s)
+        rotation, rate = torch_plant.turn(rotation, rate, still, coupling, free, dt_s)
     return State(rate, rate, rotation, rate), vehicle.inertia_kgm2
 
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 import torch
 from faultpath_quadrotor.plant import Plant, PlantState, TorchPlant
+from faultpath_quadrotor.plant.module import World
 from faultpath_quadrotor.plant.wind import Winds
-from faultpath_quadrotor.plant.world import World
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.vehicle import STEPS_PER_CONTROL
 from flights import bits as outcome_bits

@@ -5,11 +5,11 @@ import json
 from pathlib import Path
 
 import pytest
-from faultpath_quadrotor import choices, models
-from faultpath_quadrotor.checkpoint import shipped_folder
+from faultpath_quadrotor import choices, models, options
 from faultpath_quadrotor.choices import QuadrotorChoices
+from faultpath_quadrotor.models import shipped_folder
 from faultpath_quadrotor.options import QuadrotorOptions
-from faultpath_quadrotor.planners import AutoregressiveSampler, SamplerSettings
+from faultpath_quadrotor.planners import SamplerSettings
 from faultpath_quadrotor.plant.wind import Winds
 from faultpath_quadrotor.platform import PLATFORM, Platform
 
@@ -52,9 +52,9 @@ def test_what_is_on_offer_is_what_there_is():
         assert models.reconstruction(name, None).reads
     trusts = [models.estimator(name).trust for name in choices.ESTIMATORS]
     assert [(trust.biases, trust.doubt) for trust in trusts] == [(True, 1), (False, 1), (True, 3)]
-    assert tuple(models.PLANNERS) == choices.PLANNERS
-    for name, kind in models.PLANNERS.items():
-        assert type(models.planner(name, AutoregressiveSampler())) is kind
+    assert tuple(options.PLANNERS) == choices.PLANNERS
+    for name, kind in options.PLANNERS.items():
+        assert type(QuadrotorOptions(planner=name).build_planner()) is kind
     assert QuadrotorChoices().candidates == SamplerSettings().candidates
     assert f"`{PLATFORM.hash}`" in (ROOT / "docs" / "design" / "platform.md").read_text("utf-8")
 

@@ -13,7 +13,6 @@ from faultpath_quadrotor.predictors import (
     PredictorInputs,
     TrueParameter,
 )
-from faultpath_quadrotor.predictors.base import hover_thrust
 from faultpath_quadrotor.predictors.kinematic import LinearDrag
 from faultpath_quadrotor.predictors.rollout import rollout
 from faultpath_quadrotor.reconstruction import DisturbanceObserver
@@ -62,7 +61,7 @@ PREDICTORS = [STILL_AIR, DRAGGED, TrueParameter()]
 @pytest.mark.parametrize("predictor", PREDICTORS)
 def test_hover_thrust_of_the_calibration_holds_the_vehicle(predictor):
     given = inputs(mass=1.3, scale=0.8, thrust=1.3 * GRAVITY_MPS2 / 0.8)
-    hover = float(hover_thrust(given.delivered, "trim"))
+    hover = float(given.hover_thrust)
     end = rollout(predictor, given, commands(hover)).final
     assert end.position.abs().max() < 1e-9
 

@@ -6,9 +6,8 @@ import pytest
 import torch
 from faultpath_quadrotor.scenes.field import DistanceField, Lattice, exact_on_lattice
 from faultpath_quadrotor.scenes.geometry import Geometry
-from faultpath_quadrotor.scenes.library import load_library
+from faultpath_quadrotor.scenes.library import CELL_M, load_library
 from faultpath_quadrotor.scenes.scene import Scene
-from faultpath_quadrotor.scenes.soundness import CELL_M
 from flights import spread
 
 HALF_DIAGONAL_M = CELL_M * math.sqrt(3) / 2

@@ -8,13 +8,15 @@ import pytest
 from faultpath_quadrotor.scenes.geometry import Geometry
 from faultpath_quadrotor.scenes.library import (
     FROZEN,
+    MOST_OBSTACLES,
     SceneLibrary,
     as_text,
+    clearance_m,
     frozen_file,
     load_library,
+    unsound,
 )
 from faultpath_quadrotor.scenes.scene import ArenaBounds, Box, Cylinder, Scene
-from faultpath_quadrotor.scenes.soundness import MOST_OBSTACLES, clearance_m, unsound
 from flights import spread
 
 from faultpath.core.errors import UserError

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from faultpath_quadrotor.plant.world import GOAL_RADIUS_M
+from faultpath_quadrotor.plant.module import GOAL_RADIUS_M
 from faultpath_quadrotor.scenes.scene import Box
 from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M, CONTROL_DT_S, GRAVITY_MPS2
 from flights import HELD_OUT, STEPS, fault, fly, hall, quadrotor, trace, with_halls

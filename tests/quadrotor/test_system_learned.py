@@ -5,7 +5,7 @@ import pytest
 from faultpath_quadrotor.choices import STATE_NOISE_STD
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.models import predictor, reconstruction
-from faultpath_quadrotor.plant.vehicle_batch import Vehicle
+from faultpath_quadrotor.plant.protocol import Vehicle
 from faultpath_quadrotor.variants import variants
 from flights import HELD_OUT, fault, fly, quadrotor
 

@@ -1,9 +1,17 @@
 """The parts of the quadrotor: their ports are the interface, and what flies reads them all."""
 
+from collections.abc import Callable
+from typing import Any
+
 import pytest
 import torch
 from faultpath_quadrotor.estimators.protocol import ExactEstimator
-from flights import HELD_OUT, STEPS, quadrotor
+from faultpath_quadrotor.planners import NavigationCost
+from faultpath_quadrotor.plant.module import VehiclePlant
+from faultpath_quadrotor.predictors import PredictorInputs, module
+from faultpath_quadrotor.vehicle import GRAVITY_MPS2
+from flights import HELD_OUT, STEPS, fly, quadrotor
+from torch import Tensor
 
 from faultpath.loop import Batch, readers
 from faultpath.run.attempt import taps_of
@@ -44,3 +52,46 @@ def test_what_flies_reads_every_port_and_commands_late(options, variant):
     taught = {each.reader for each in reads if each.channel == "action"}
     late = {each.reader for each in reads if each.valid_step < each.step}
     assert late == taught - {"vehicle.actuators"}
+
+
+def test_the_mass_has_seven_forms_from_scene_to_cost(monkeypatch):
+    """That of the scene, and those below: axes are turned where plant and modules meet taps."""
+    system, scenes = quadrotor(), HELD_OUT[:3]
+    vehicles = [system.scene(scene).vehicle for scene in scenes]
+    forms: dict[str, Tensor] = {}
+
+    def spy(owner: Any, name: str, seen: Callable[[Any, Any], dict[str, Tensor]]) -> None:
+        original = getattr(owner, name)
+
+        def spying(*arguments: Any) -> Any:
+            result = original(*arguments)
+            forms.update(seen(arguments, result))
+            return result
+
+        monkeypatch.setattr(owner, name, spying)
+
+    def sensed(arguments: Any, result: Any) -> dict[str, Tensor]:
+        vehicle = arguments[1].world.vehicle
+        return {"vehicle": vehicle.mass_kg, "reading": result["vehicle"]["mass"]}
+
+    spy(VehiclePlant, "sense", sensed)
+    spy(module.PredictorModule, "compute", lambda given, _: {"lanes": given[1]["mass", "dynamics"]})
+    spy(module, "predictor_inputs", lambda _, inputs: {"inputs": inputs["mass", "dynamics"]})
+    spy(PredictorInputs, "take", lambda _, inputs: {"chunk": inputs["mass", "dynamics"]})
+    spy(NavigationCost, "__call__", lambda given, _: {"hover thrust": given[1].hover})
+    fly(system, "dob", scenes)
+    double, single = torch.float64, torch.float32
+    assert {name: (tuple(form.shape), form.dtype) for name, form in forms.items()} == {
+        "vehicle": ((32,), double),
+        "reading": ((3,), double),
+        "lanes": ((32,), double),
+        "inputs": ((32, 1), single),
+        "chunk": ((3, 1), single),
+        "hover thrust": ((3,), single),
+    }
+    thrust = forms.pop("hover thrust") / GRAVITY_MPS2
+    masses = torch.tensor([vehicle.mass_kg for vehicle in vehicles])
+    scales = torch.tensor([vehicle.thrust_scale for vehicle in vehicles])
+    torch.testing.assert_close(thrust * scales, masses)
+    for form in forms.values():
+        torch.testing.assert_close(form.flatten()[:3].float(), masses)

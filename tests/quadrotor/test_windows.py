@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 import torch
-from faultpath_quadrotor.training.collection import collect
 from faultpath_quadrotor.training.fitting import fit
+from faultpath_quadrotor.training.flight import collect
 from faultpath_quadrotor.training.predictor_task import PredictorTask
 from faultpath_quadrotor.training.windows import Windows, starts, windows_of
 from faultpath_quadrotor.vehicle import CONTROL_DT_S

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import Concatenate, ParamSpec
 
 import numpy as np
 
@@ -116,6 +117,16 @@ def _drawn(library_hash: str, n_scenes: int) -> Resamples:
 
 Quantity = Callable[[Results], Contrast]
 """Computes a number from a run, for tables and claims; raises `NotRun` or `Undecidable`."""
+P = ParamSpec("P")
+
+
+def quantity(compute: Callable[Concatenate[Results, P], Contrast]) -> Callable[P, Quantity]:
+    """Make a function of a run and of cells or measurements one of the latter, before any run."""
+
+    def named(*args: P.args, **kwargs: P.kwargs) -> Quantity:
+        return lambda results: compute(results, *args, **kwargs)
+
+    return named
 
 
 def decisive(contrast: Contrast, notable: float | None = None) -> Contrast:

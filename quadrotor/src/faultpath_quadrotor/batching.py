@@ -26,11 +26,6 @@ candidates still stay in cache. A scene's result is the same in a chunk of any s
 candidates fill whole vectors."""
 
 
-def lanes_of(batch: Batch, device: torch.device) -> Tensor:
-    """Return the scene of each lane of a batch, long `[L]`; the last lanes only fill it up."""
-    return padded_lanes(len(batch.scenes)).to(device)
-
-
 def scenes_first(value: Tensor, count: int) -> Tensor:
     """Turn `[..., L]` lanes into `[B, ...]` scenes."""
     return value[..., :count].movedim(-1, 0)
@@ -49,7 +44,8 @@ class LaneModule(Module):
 
     @override
     def begin(self, batch: Batch) -> Memory:
-        return lanes_of(batch, self._device), len(batch.scenes), None
+        lanes = padded_lanes(len(batch.scenes)).to(self._device)
+        return lanes, len(batch.scenes), None
 
     @override
     def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:

@@ -93,7 +93,7 @@ ESTIMATORS: Mapping[str, str] = {
 }
 """The shipped estimators that read sensors, in words; `models` builds them."""
 PLANNERS = ("mppi", "cem")
-"""The shipped planners; `models` builds them."""
+"""The shipped planners; `options` builds them."""
 
 
 class QuadrotorChoices(Frozen):

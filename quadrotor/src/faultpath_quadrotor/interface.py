@@ -9,11 +9,10 @@ from faultpath.loop import Part, Port, interface_of
 from faultpath_quadrotor.perception.module import Perception
 from faultpath_quadrotor.planners.module import PlannerModule
 from faultpath_quadrotor.plant.module import VehiclePlant
-from faultpath_quadrotor.predictors.history import HistoryEncoder
-from faultpath_quadrotor.predictors.module import PredictorModule
-from faultpath_quadrotor.predictors.predictor_inputs import PLACES, ports
+from faultpath_quadrotor.predictors.base import PLACES, ports
+from faultpath_quadrotor.predictors.module import HistoryEncoder, PredictorModule
 from faultpath_quadrotor.reconstruction import DisturbanceObserver
-from faultpath_quadrotor.reconstruction.module import WindModule
+from faultpath_quadrotor.reconstruction.base import WindModule
 from faultpath_quadrotor.reconstruction.network import READS
 
 

@@ -1,22 +1,22 @@
-"""Shipped parts by name, with their trained weights."""
+"""Shipped parts by name, with their trained weights and the cards that say where they come from."""
 
-from collections.abc import Mapping
 from functools import lru_cache
-from typing import Any
+from importlib.resources import files
+from pathlib import Path
+from typing import TypeVar
 
 import torch
+from pydantic import JsonValue
 from torch import nn
 
 from faultpath.plugin.system import UserError
-from faultpath.plugin.training import fill
-from faultpath_quadrotor.checkpoint import ModelCard, checkpoint_path
+from faultpath.plugin.training import Card, fill
 from faultpath_quadrotor.choices import INERTIAL, Fixes
 from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.estimators import ErrorStateFilter, Estimator
 from faultpath_quadrotor.estimators.kalman import Trust
 from faultpath_quadrotor.estimators.sensors import sensors
 from faultpath_quadrotor.perception import ClearanceModel
-from faultpath_quadrotor.planners import CEM, MPPI, AutoregressiveSampler, NavigationCost, Planner
 from faultpath_quadrotor.platform import CLEARANCE, PLATFORM
 from faultpath_quadrotor.predictors import (
     AnchoredPredictor,
@@ -33,6 +33,49 @@ from faultpath_quadrotor.reconstruction import (
     RecurrentReconstruction,
     WindNetwork,
 )
+
+FORMAT = "faultpath-model/1"
+Model = TypeVar("Model", Predictor, Reconstruction)
+
+
+class ModelCard(Card):
+    """The card of a fitted model."""
+
+    format: str = FORMAT
+    description: str
+    samples: int
+    """Training samples in an epoch."""
+    data_sha256: dict[str, JsonValue]
+    """Digest of each pool of data."""
+    config: dict[str, JsonValue]
+    """Everything else that the task describes."""
+    order_key: str
+    """Stream of the minibatch order."""
+    platform: str
+    """`PLATFORM.weights_hash` of the platform that the data were made for."""
+    torch_version: str
+    faultpath_version: str
+
+    @property
+    def final(self) -> dict[str, float]:
+        """Validation metrics of the weights, the main one first."""
+        return self.validation[-1]
+
+
+def shipped_folder() -> Path:
+    """Return the folder of the checkpoints that come with the package."""
+    return Path(str(files("faultpath_quadrotor"))) / "checkpoints"
+
+
+def checkpoint_path(name: str, seed: int) -> Path:
+    """Return the shipped weights file of a model; `UserError` without it."""
+    path = shipped_folder() / f"{name}-{seed}.safetensors"
+    if not path.is_file():
+        raise UserError(
+            f"there is no checkpoint of '{name}' with seed {seed} in {path.parent}: "
+            f"`faultpath train quadrotor {name} --seed {seed} --ship` makes it."
+        )
+    return path
 
 
 def blank_predictor(name: str) -> Predictor:
@@ -63,20 +106,14 @@ def blank_reconstruction(name: str) -> Reconstruction:
 def predictor(name: str, seed: int | None, device: torch.device = CPU) -> Predictor:
     """Return a predictor as trained with a seed, blank for `None`; raises as `_fill`."""
     with device:
-        model = blank_predictor(name)
-        if seed is not None and isinstance(model, AnchoredPredictor | UnanchoredPredictor):
-            _fill(model.network, name, seed)
-    return model
+        return _trained(blank_predictor(name), name, seed)
 
 
 @lru_cache
 def reconstruction(name: str, seed: int | None, device: torch.device = CPU) -> Reconstruction:
     """Return a reconstruction as trained with a seed, blank for `None`; raises as `_fill`."""
     with device:
-        model = blank_reconstruction(name)
-        if seed is not None and isinstance(model, RecurrentReconstruction):
-            _fill(model.network, name, seed)
-    return model
+        return _trained(blank_reconstruction(name), name, seed)
 
 
 @lru_cache
@@ -88,29 +125,17 @@ def clearance_model(device: torch.device = CPU) -> ClearanceModel:
     return model.eval()
 
 
-_FILTERS: Mapping[str, Any] = {
-    "eskf": {},
-    "eskf-no-bias": {"biases": False},
-    "eskf-cautious": {"doubt": 3.0},
-}
-"""What each Kalman filter trusts otherwise than `Trust`."""
-
-
 def estimator(name: str, fixes: Fixes = Fixes.OPTICAL, device: torch.device = CPU) -> Estimator:
     """Return an estimator of `choices.ESTIMATORS`."""
-    return ErrorStateFilter(Trust(sensors(fixes), **_FILTERS[name]), device)
+    biases, doubt = name != "eskf-no-bias", 3.0 if name == "eskf-cautious" else 1.0
+    return ErrorStateFilter(Trust(sensors(fixes), biases, doubt), device)
 
 
-PLANNERS: Mapping[str, type[Planner]] = {"mppi": MPPI, "cem": CEM}
-"""Classes of `choices.PLANNERS`; `planner` builds them."""
-
-
-def planner(name: str, sampler: AutoregressiveSampler) -> Planner:
-    """Return a planner of `choices.PLANNERS`."""
-    cost = NavigationCost(PLATFORM.planner.weights)
-    if name == "cem":
-        return CEM(sampler, cost)
-    return MPPI(sampler, cost, PLATFORM.planner.temperature)
+def _trained(model: Model, name: str, seed: int | None) -> Model:
+    learned = AnchoredPredictor | UnanchoredPredictor | RecurrentReconstruction
+    if seed is not None and isinstance(model, learned):
+        _fill(model.network, name, seed)
+    return model
 
 
 def _fill(network: nn.Module, name: str, seed: int) -> None:

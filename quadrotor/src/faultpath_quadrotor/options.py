@@ -1,5 +1,6 @@
 """A user's choices for the quadrotor, and the frozen settings behind them."""
 
+from collections.abc import Mapping
 from typing import Self
 
 import torch
@@ -14,14 +15,19 @@ from faultpath_quadrotor.choices import (
     SamplerName,
 )
 from faultpath_quadrotor.device import device_of, require
-from faultpath_quadrotor.models import PLANNERS, planner
 from faultpath_quadrotor.planners import (
+    CEM,
+    MPPI,
     AutoregressiveSampler,
     BundledSampler,
+    NavigationCost,
     Planner,
     SamplerSettings,
 )
 from faultpath_quadrotor.platform import PLATFORM
+
+PLANNERS: Mapping[str, type[Planner]] = {"mppi": MPPI, "cem": CEM}
+"""Classes of `choices.PLANNERS`; `build_planner` builds them."""
 
 
 class QuadrotorOptions(QuadrotorChoices):
@@ -89,4 +95,7 @@ class QuadrotorOptions(QuadrotorChoices):
         """Return the shipped planner of these options."""
         bundled = self.sampler is SamplerName.MODE_PRESERVING
         sampler = (BundledSampler if bundled else AutoregressiveSampler)(self.sampling)
-        return planner(self.planner, sampler)
+        cost = NavigationCost(PLATFORM.planner.weights)
+        if self.planner == "cem":
+            return CEM(sampler, cost)
+        return MPPI(sampler, cost, PLATFORM.planner.temperature)

@@ -15,7 +15,6 @@ from faultpath.loop import Deliverer, Loop, Module, Part, Plant
 from faultpath.plugin.system import UserError
 from faultpath.system import VEHICLE, FloorPlan, Library, LoopSystem, Outcome, SceneRef, Wiring
 from faultpath_quadrotor import native
-from faultpath_quadrotor.checkpoint import shipped_folder
 from faultpath_quadrotor.choices import (
     ESTIMATORS,
     INERTIAL,
@@ -30,17 +29,16 @@ from faultpath_quadrotor.estimators import Estimator
 from faultpath_quadrotor.estimators.protocol import with_estimators
 from faultpath_quadrotor.estimators.sensors import SENSORS, sensors
 from faultpath_quadrotor.interface import quadrotor_interface
-from faultpath_quadrotor.models import clearance_model, estimator, reconstruction
+from faultpath_quadrotor.models import clearance_model, estimator, reconstruction, shipped_folder
 from faultpath_quadrotor.options import QuadrotorOptions
 from faultpath_quadrotor.perception import DepthClearance, DepthRenderer
 from faultpath_quadrotor.perception.module import Perception
 from faultpath_quadrotor.planners.module import PlannerModule
 from faultpath_quadrotor.plant import TorchPlant
-from faultpath_quadrotor.plant.module import VehiclePlant
-from faultpath_quadrotor.plant.vehicle_batch import Vehicle
-from faultpath_quadrotor.plant.world import World
+from faultpath_quadrotor.plant.module import VehiclePlant, World
+from faultpath_quadrotor.plant.protocol import Vehicle
 from faultpath_quadrotor.platform import PLATFORM
-from faultpath_quadrotor.reconstruction.module import WindModule
+from faultpath_quadrotor.reconstruction.base import WindModule
 from faultpath_quadrotor.scenes.field import DistanceField
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.scenes.prisms import floor_plan

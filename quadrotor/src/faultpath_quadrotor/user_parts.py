@@ -32,8 +32,8 @@ from faultpath_quadrotor.interface import quadrotor_interface
 from faultpath_quadrotor.planners import Planner, SamplerSettings, Scored
 from faultpath_quadrotor.plant import Plant
 from faultpath_quadrotor.predictors import KinematicIntegrator, Predictor
-from faultpath_quadrotor.predictors.history import STEPS as HISTORY
-from faultpath_quadrotor.predictors.predictor_inputs import check_places, history, predictor_inputs
+from faultpath_quadrotor.predictors.base import check_places, history, predictor_inputs
+from faultpath_quadrotor.predictors.module import STEPS as HISTORY
 from faultpath_quadrotor.predictors.rollout import rollout
 from faultpath_quadrotor.predictors.true_parameter import CODE
 from faultpath_quadrotor.reconstruction import Reconstruction

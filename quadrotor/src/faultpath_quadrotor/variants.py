@@ -27,10 +27,9 @@ from faultpath_quadrotor.models import estimator, predictor, reconstruction
 from faultpath_quadrotor.options import QuadrotorOptions
 from faultpath_quadrotor.planners import Planner
 from faultpath_quadrotor.predictors import Predictor
-from faultpath_quadrotor.predictors.history import HistoryEncoder
-from faultpath_quadrotor.predictors.module import PredictorModule
+from faultpath_quadrotor.predictors.module import HistoryEncoder, PredictorModule
 from faultpath_quadrotor.reconstruction import Reconstruction
-from faultpath_quadrotor.reconstruction.module import WindModule
+from faultpath_quadrotor.reconstruction.base import WindModule
 from faultpath_quadrotor.user_parts import UserPart
 
 ZERO_WIND = "zero-wind"

@@ -11,7 +11,7 @@ from faultpath_paper.claims.rules import (
     at_most,
     by_point,
 )
-from faultpath_paper.claims.statement import Statement, Statements
+from faultpath_paper.claims.statement import Statement, Statements, stated
 from faultpath_paper.pages import figure_3, in_text, table_2
 from faultpath_paper.quantities.differences import combined, rate, success
 from faultpath_paper.quantities.summaries import at_lower_success, range_gained, worst
@@ -42,7 +42,7 @@ def _error_at_lower_success_in_paper() -> float:
 
 def _repaired(pair: tuple[str, str], error: float) -> Statement:
     repair, baseline = pair
-    return Statement(
+    return stated(
         f"success of {repair.upper()} minus {baseline.upper()} at e = {error:+g}",
         success(table_2.cell(repair, error), table_2.cell(baseline, error)),
         ABOVE,
@@ -57,7 +57,7 @@ def _noisy(error: float) -> tuple[Cell, Cell]:
 def _responds(
     first: str, second: str, probe: str, rule: Rule, paper: Printed | None = None
 ) -> Statement:
-    return Statement(
+    return stated(
         f"median response of {first.upper()} to the {probe} probe over that of {second.upper()}",
         ratio((in_text.response(first, probe),), (in_text.response(second, probe),)),
         rule,
@@ -74,7 +74,7 @@ def _response_in_paper(first: str, probe: str, second: str) -> Printed:
 CLAIMS: dict[str, Statements] = {
     **{
         claim: (
-            Statement(
+            stated(
                 f"success of WM-A at e = {error:+g} minus at e = 0",
                 success(*_under(BASELINE, error)),
                 at_most(-lost_pp, seen=True),
@@ -84,13 +84,13 @@ CLAIMS: dict[str, Statements] = {
         for claim, error, lost_pp in (("C05", 0.1, 30), ("C06", -0.1, 20))
     },
     "C07": (
-        Statement(
+        stated(
             "success of WM-U at e = +0.1 minus at e = 0",
             success(*_under(WM_U[1], 0.1)),
             BELOW,
             Printed(_under_in_paper(WM_U[1], 0.1)),
         ),
-        Statement(
+        stated(
             "success of WM-A at e = +0.1 minus at e = 0, minus that of WM-U,",
             combined((1, _under(BASELINE, 0.1)), (-1, _under(WM_U[1], 0.1))),
             by_point(-1),
@@ -98,7 +98,7 @@ CLAIMS: dict[str, Statements] = {
         ),
     ),
     "C08": (
-        Statement(
+        stated(
             "success of WM-U at e = -0.1 minus at e = 0, minus a third of the same at e = +0.1,",
             combined((1, _under(WM_U[1], -0.1)), (-1 / 3, _under(WM_U[1], 0.1))),
             by_point(1),
@@ -108,7 +108,7 @@ CLAIMS: dict[str, Statements] = {
     "C09": tuple(_repaired(WM_A, error) for error in FAULTS),
     "C10": (_repaired(WM_U, 0.1),),
     "C11": tuple(
-        Statement(
+        stated(
             f"success of {repair.upper()} minus {baseline.upper()} at e = 0",
             success(table_2.cell(repair, 0.0), table_2.cell(baseline, 0.0)),
             NO_LOSS,
@@ -117,30 +117,30 @@ CLAIMS: dict[str, Statements] = {
         for repair, baseline in table_2.PAIRS
     ),
     "C12": (
-        Statement(
+        stated(
             "median error of WM-A at the sign with less success, minus at the other,",
             at_lower_success(PLUS, MINUS, 0.5),
             by_point(-1),
             Printed(_error_at_lower_success_in_paper()),
         ),
-        Statement(
+        stated(
             "90th percentile of that error at the sign with less success, minus at the other,",
             at_lower_success(PLUS, MINUS, 0.9),
             by_point(1),
         ),
     ),
     "C13": (
-        Statement(
+        stated(
             "worst success of WM-U+DCC over the sweep, in percent,",
             worst(WM_U[0]),
             by_point(1, 99, strict=False),
         ),
-        Statement(
+        stated(
             "number of errors around 0 with success of 90 and more, WM-A+DCC minus WM-A,",
             range_gained(*WM_A),
             by_point(1),
         ),
-        Statement(
+        stated(
             f"success of WM-A+DCC at e = {figure_3.ERRORS[0]:g}, in percent,",
             rate(figure_3.cell(REPAIR, figure_3.ERRORS[0])),
             by_point(-1, 50),
@@ -165,14 +165,14 @@ CLAIMS: dict[str, Statements] = {
     ),
     "C15": (
         *(
-            Statement(
+            stated(
                 f"success of WM-A+DCC minus WM-A with noise and delay at e = {error:+g}",
                 success(*_noisy(error)),
                 ABOVE,
             )
             for error in FAULTS
         ),
-        Statement(
+        stated(
             "success of WM-A+DCC minus WM-A with noise and delay at e = 0",
             success(*_noisy(0.0)),
             BELOW,

@@ -2,7 +2,7 @@
 
 from faultpath_paper.cells import Printed, published
 from faultpath_paper.claims.rules import NO_LOSS, Rule, at_least, by_point, less_than, within
-from faultpath_paper.claims.statement import Statement, Statements
+from faultpath_paper.claims.statement import Statement, Statements, stated
 from faultpath_paper.pages import in_text, table_4, table_6
 from faultpath_paper.quantities.summaries import rank_correlation
 from faultpath_paper.quantities.windows import (
@@ -28,7 +28,7 @@ def _acceleration(method: str, interface: str) -> Subject:
 
 
 def _over_nominal(method: str, interface: str, rule: Rule) -> Statement:
-    return Statement(
+    return stated(
         f"acceleration error of {method.upper()}, {interface} over correct,",
         ratio(_acceleration(method, interface), _acceleration(method, NOMINAL)),
         rule,
@@ -43,7 +43,7 @@ def _repair_moves_less(what: str, other: str, first: str, second: str, *, size: 
     )
     changes = [_printed(method, second) - _printed(method, first) for method in (DCC, other)]
     own, others = map(abs, changes) if size else changes
-    return Statement(
+    return stated(
         f"{what} in acceleration error, GRU+DCC minus {other.upper()},",
         difference_of_changes(repair, rival, size=size),
         by_point(-1),
@@ -73,7 +73,7 @@ CLAIMS: dict[str, Statements] = {
         ),
     ),
     "C31": (
-        Statement(
+        stated(
             "wind-term error of GRU, shared over reconstruction-only,",
             ratio(
                 table_6.errors("wind-term-error", GRU, SHARED),
@@ -82,7 +82,7 @@ CLAIMS: dict[str, Statements] = {
             WITHIN_15_PERCENT,
             Printed(_WIND_TERM["shared"] / _WIND_TERM["isolated"]),
         ),
-        Statement(
+        stated(
             "acceleration error of GRU, shared over reconstruction-only,",
             ratio(_acceleration(GRU, SHARED), _acceleration(GRU, ISOLATED)),
             less_than(0.7),
@@ -90,7 +90,7 @@ CLAIMS: dict[str, Statements] = {
         ),
     ),
     "C34": tuple(
-        Statement(
+        stated(
             f"rank correlation of success with {error} over {len(in_text.NINE)} cells",
             rank_correlation(
                 [
@@ -109,7 +109,7 @@ CLAIMS: dict[str, Statements] = {
         )
     ),
     "C35": (
-        Statement(
+        stated(
             "median position error with GRU, shared minus reconstruction-only,",
             difference_of_quantiles(
                 table_6.errors("position-error", GRU, SHARED),
@@ -120,7 +120,7 @@ CLAIMS: dict[str, Statements] = {
     ),
     "C40": (
         *(
-            Statement(
+            stated(
                 f"acceleration error of {method.upper()}, correct,",
                 median(_acceleration(method, NOMINAL)),
                 within(*limits),
@@ -128,7 +128,7 @@ CLAIMS: dict[str, Statements] = {
             )
             for method, limits in ((DOB, (0.4, 0.7)), (GRU, (0.8, 1.4)))
         ),
-        Statement(
+        stated(
             "acceleration error of GRU over that of DOB, correct,",
             ratio(_acceleration(GRU, NOMINAL), _acceleration(DOB, NOMINAL)),
             at_least(1.5),

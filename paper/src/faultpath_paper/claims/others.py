@@ -2,7 +2,7 @@
 
 from faultpath_paper.cells import Printed, of_seed, published
 from faultpath_paper.claims.rules import NO_GAIN, NO_LOSS, REPORTED, at_least, by_point
-from faultpath_paper.claims.statement import Statement, Statements
+from faultpath_paper.claims.statement import Statements, stated
 from faultpath_paper.pages import in_text, table_4, table_6
 from faultpath_paper.quantities.differences import success
 from faultpath_paper.quantities.summaries import share
@@ -20,13 +20,13 @@ def _frozen(key: str) -> Printed:
 
 CLAIMS: dict[str, Statements] = {
     "C36": (
-        Statement(
+        stated(
             "success of the GRU without calibration minus GRU, correct inputs, seed 0,",
             success(in_text.CALIBRATION_WITHHELD, GRU),
             by_point(-1),
             Printed(_PAPER["reconstruction_without_calibration_success"] - _NOMINAL),
         ),
-        Statement(
+        stated(
             "success of GRU+DCC minus GRU, correct inputs, seed 0",
             success(DCC, GRU),
             REPORTED,
@@ -34,13 +34,13 @@ CLAIMS: dict[str, Statements] = {
         ),
     ),
     "C37": (
-        Statement(
+        stated(
             "success of WM-A+DCC with the history code frozen minus updated, e = +0.1,",
             success(in_text.CODE_FROZEN, in_text.CODE_UPDATED),
             NO_LOSS,
             _frozen("WM-A+DCC obstacles e=+0.1"),
         ),
-        Statement(
+        stated(
             "success of the wind-withheld model with the code frozen minus updated, L3,",
             success(in_text.WITHHELD_FROZEN, in_text.WITHHELD_UPDATED),
             NO_LOSS,
@@ -48,13 +48,13 @@ CLAIMS: dict[str, Statements] = {
         ),
     ),
     "C38": (
-        Statement(
+        stated(
             "percentage of scenes that succeed in all eight configurations",
             share(in_text.CEILING, True),
             at_least(50),
             Printed(_PAPER["ceiling_eight_configurations"]["succeed_in_all"]),
         ),
-        Statement(
+        stated(
             "percentage of scenes that fail in all eight configurations",
             share(in_text.CEILING, False),
             at_least(10),
@@ -62,7 +62,7 @@ CLAIMS: dict[str, Statements] = {
         ),
     ),
     "C39": tuple(
-        Statement(
+        stated(
             f"success with {name} minus the reference planner",
             success(planner, in_text.REFERENCE_PLANNER, other_noise=True),
             NO_GAIN,

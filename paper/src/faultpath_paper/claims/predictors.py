@@ -2,11 +2,12 @@
 
 from itertools import combinations
 
-from faultpath_paper.cells import Cell, Printed, of_seed, published
+from faultpath.system import Status
+from faultpath_paper.cells import Cell, Printed, of_seed
 from faultpath_paper.claims.rules import ABOVE, BELOW, NO_DIFFERENCE, NO_LOSS, at_least, by_point
-from faultpath_paper.claims.statement import Statement, Statements
+from faultpath_paper.claims.statement import Statements, stated
 from faultpath_paper.pages import table_1
-from faultpath_paper.quantities.differences import crashes, success, time, timeouts
+from faultpath_paper.quantities.differences import ended, success, time
 from faultpath_paper.quantities.windows import Subject, difference_of_quantiles, ratio
 
 NAMES = {
@@ -17,15 +18,6 @@ NAMES = {
 }
 SEEN = {table_1.WM_A: table_1.WM_A_SEEN, table_1.TRUE_PARAMETER: table_1.TRUE_PARAMETER_SEEN}
 """Each with ground-truth clearance."""
-_PAPER = published("table_1_prediction_accuracy")
-_KEYS = {
-    table_1.DKI: "DKI",
-    table_1.WM_A: "WM-A",
-    table_1.WM_U: "WM-U",
-    table_1.TRUE_PARAMETER: "true-parameter",
-    table_1.WM_A_SEEN: "WM-A/true-clearance",
-    table_1.TRUE_PARAMETER_SEEN: "true-parameter/true-clearance",
-}
 WORSE_THAN = (
     (table_1.DKI, table_1.WM_A),
     (table_1.DKI, table_1.WM_U),
@@ -39,24 +31,20 @@ def _error(cell: Cell) -> Subject:
 
 
 def _paper(first: Cell, second: Cell, what: str, times: float = 1.0) -> Printed:
-    one, two = (_PAPER[_KEYS[cell]][what] for cell in (first, second))
+    one, two = (table_1.PAPER[table_1.KEYS[cell]][what] for cell in (first, second))
     return Printed(times * (one - two))
-
-
-def _clearance(cell: Cell, what: str) -> str:
-    return f"{what} of {NAMES[cell]} with ground-truth clearance minus without"
 
 
 CLAIMS: dict[str, Statements] = {
     "C01": (
-        Statement(
+        stated(
             "median common error of DKI over that of the true-parameter model",
             ratio(_error(table_1.DKI), _error(table_1.TRUE_PARAMETER)),
             at_least(5),
-            Printed(_PAPER["error_span"]),
+            Printed(table_1.PAPER["error_span"]),
         ),
         *(
-            Statement(
+            stated(
                 f"median common error of {NAMES[worse]} minus that of {NAMES[better]}",
                 difference_of_quantiles(_error(worse), _error(better)),
                 by_point(1),
@@ -66,7 +54,7 @@ CLAIMS: dict[str, Statements] = {
         ),
     ),
     "C02": tuple(
-        Statement(
+        stated(
             f"success of {NAMES[first]} minus {NAMES[second]}",
             success(of_seed(first), of_seed(second)),
             NO_DIFFERENCE,
@@ -75,31 +63,21 @@ CLAIMS: dict[str, Statements] = {
         for first, second in combinations(table_1.PREDICTORS, 2)
     ),
     "C03": (
-        Statement(
+        stated(
             "median difference in time where both succeed, DKI minus WM-A",
             time(table_1.DKI, table_1.WM_A),
             ABOVE,
-            Printed(_PAPER["paired_time_minus_WM-A_s"]["DKI"]["median"]),
+            Printed(table_1.PAPER["paired_time_minus_WM-A_s"]["DKI"]["median"]),
         ),
     ),
-    "C04": (
-        *(
-            Statement(
-                _clearance(cell, "crash rate"),
-                crashes(seen, cell),
-                BELOW,
-                _paper(seen, cell, "crash"),
-            )
-            for cell, seen in SEEN.items()
-        ),
-        *(
-            Statement(
-                _clearance(cell, "timeout rate"),
-                timeouts(seen, cell),
-                NO_LOSS,
-                _paper(seen, cell, "timeout"),
-            )
-            for cell, seen in SEEN.items()
-        ),
+    "C04": tuple(
+        stated(
+            f"{end.value} rate of {NAMES[cell]} with ground-truth clearance minus without",
+            success(seen, cell, ended(end)),
+            rule,
+            _paper(seen, cell, end.value),
+        )
+        for end, rule in ((Status.CRASH, BELOW), (Status.TIMEOUT, NO_LOSS))
+        for cell, seen in SEEN.items()
     ),
 }

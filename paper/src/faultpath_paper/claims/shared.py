@@ -9,8 +9,9 @@ from faultpath_paper.claims.statement import (
     ALL_SEEDS,
     Statement,
     Statements,
-    TurnsDown,
     seeds_that_turn,
+    stated,
+    turns_down,
 )
 from faultpath_paper.pages.table_4 import CONDITIONS, cell, change, paper_contrast, paper_rate
 from faultpath_paper.pages.table_6 import negative, paper_negative
@@ -21,7 +22,7 @@ GRU, DCC, DOB = "gru", "gru+dcc", "dob"
 
 
 def _between_conditions(method: str, first: str, second: str, rule: Rule) -> Statement:
-    return Statement(
+    return stated(
         f"success of {method.upper()}, {first} minus {second},",
         success(cell(method, first), cell(method, second)),
         rule,
@@ -30,7 +31,7 @@ def _between_conditions(method: str, first: str, second: str, rule: Rule) -> Sta
 
 
 def _between_methods(first: str, second: str, condition: str, rule: Rule) -> Statement:
-    return Statement(
+    return stated(
         f"success of {first.upper()} minus {second.upper()}, {condition},",
         success(cell(first, condition), cell(second, condition)),
         rule,
@@ -43,7 +44,7 @@ def _repair(condition: str) -> tuple[Cell, Cell]:
 
 
 def _negative(condition: str, rule: Rule) -> Statement:
-    return Statement(
+    return stated(
         f"success of GRU+DCC minus GRU at the negative offset, {condition},",
         success(negative(DCC, condition), negative(GRU, condition)),
         rule,
@@ -62,7 +63,7 @@ def _printed(figure: Mapping[str, Any]) -> Printed:
 
 def _farther(condition: str, rule: Rule) -> Statement:
     at = list(CONDITIONS).index(condition)
-    return Statement(
+    return stated(
         f"terminal goal distance of GRU+DCC minus GRU, {condition},",
         combined((1, _repair(condition)), effect=terminal_distance),
         rule,
@@ -81,7 +82,7 @@ CLAIMS: dict[str, Statements] = {
         _between_methods(DCC, GRU, CORRECT, BELOW),
     ),
     "C26": (
-        TurnsDown(
+        turns_down(
             "success of GRU+DCC minus GRU, from reconstruction-only to shared,",
             _repair(ISOLATED),
             _repair(SHARED),
@@ -89,7 +90,7 @@ CLAIMS: dict[str, Statements] = {
                 paper_contrast(DCC, GRU, SHARED).value - paper_contrast(DCC, GRU, ISOLATED).value
             ),
         ),
-        Statement(
+        stated(
             "number of seeds in which success of GRU+DCC minus GRU is above 0 under "
             "reconstruction-only and below 0 under shared",
             seeds_that_turn(_repair(ISOLATED), _repair(SHARED)),
@@ -97,7 +98,7 @@ CLAIMS: dict[str, Statements] = {
         ),
     ),
     "C27": (
-        Statement(
+        stated(
             "terminal goal distance of GRU+DCC minus GRU, shared minus reconstruction-only,",
             change(DCC, GRU, terminal_distance),
             ABOVE,
@@ -116,7 +117,7 @@ CLAIMS: dict[str, Statements] = {
         *(_negative(condition, NO_DIFFERENCE) for condition in (ISOLATED, SHARED)),
     ),
     "C41": (
-        Statement(
+        stated(
             "success of DOB minus GRU, shared minus reconstruction-only,",
             change(DOB, GRU, succeeded),
             NO_DIFFERENCE,
@@ -124,7 +125,7 @@ CLAIMS: dict[str, Statements] = {
         ),
     ),
     "C42": (
-        Statement(
+        stated(
             "success of GRU at the negative offset, shared minus correct,",
             success(negative(GRU, SHARED), negative(GRU, CORRECT)),
             by_point(-1),

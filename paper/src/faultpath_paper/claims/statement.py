@@ -1,8 +1,9 @@
 """A statement of a claim: what is looked at, and the rule that answers."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import hypot
-from typing import Any, NamedTuple, Protocol, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 from faultpath.report.sentences import wording
 from faultpath.stats.contrast import Contrast, change
@@ -20,7 +21,7 @@ from faultpath_paper.claims.rules import (
 )
 from faultpath_paper.detection import detection, least_detectable, resampled
 from faultpath_paper.quantities.differences import Pair, together
-from faultpath_paper.results import NotRun, Quantity, Results, Undecidable, decisive
+from faultpath_paper.results import NotRun, Quantity, Results, Undecidable, decisive, quantity
 
 NO_EFFECT = {"pp": 0.0, "s": 0.0, "m": 0.0, "m/s^2": 0.0, "times": 1.0}
 """Value of no effect, by unit; in any other unit, as for a share of scenes, there is no sign."""
@@ -67,49 +68,33 @@ def _side(interval: Ends, of: float) -> int:
     return int(interval[0] > of) - int(interval[1] < of)
 
 
-class Stated(Protocol):
-    """One part of a claim."""
-
-    @property
-    def words(self) -> str:
-        """The statement."""
-        ...
-
-    @property
-    def paper(self) -> Printed | None:
-        """The paper's figure for it."""
-        ...
-
-    def part(self, results: Results) -> StatementPart:
-        """Answer the statement from a run; raises `NotRun` or `Undecidable`."""
-        ...
-
-
-Statements: TypeAlias = tuple[Stated, ...]
-
-
 @dataclass(frozen=True)
 class Statement:
-    """A part of a claim that a rule decides from one quantity."""
+    """One part of a claim."""
 
-    subject: str
-    """Subject, as the beginning of a sentence; differences are first minus second."""
-    quantity: Quantity
-    rule: Rule
-    paper: Printed | None = None
-    """The paper's figure for the quantity, in its unit; `None` where it prints none."""
+    words: str
+    paper: Printed | None
+    """The paper's figure, in the unit of the estimate; `None` where it prints none."""
+    part: Callable[[Results], StatementPart]
+    """Answers the statement from a run; raises `NotRun` or `Undecidable`."""
 
-    @property
-    def words(self) -> str:
-        """The statement."""
-        return self.rule.words.format(self.subject)
 
-    def part(self, results: Results) -> StatementPart:
-        """Answer the statement from a run."""
-        contrast = self.quantity(results)
-        no_effect = NO_EFFECT.get(contrast.unit) if self.rule.sided else None
-        judged = self.rule.judge(resampled(contrast))
-        return shown(self.words, judged, contrast, self.paper, no_effect)
+Statements: TypeAlias = tuple[Statement, ...]
+
+
+def stated(subject: str, quantity: Quantity, rule: Rule, paper: Printed | None = None) -> Statement:
+    """Return the statement that a rule decides from one quantity.
+
+    `subject` is the beginning of a sentence; differences are first minus second.
+    """
+    words = rule.words.format(subject)
+
+    def part(results: Results) -> StatementPart:
+        contrast = quantity(results)
+        no_effect = NO_EFFECT.get(contrast.unit) if rule.sided else None
+        return shown(words, rule.judge(resampled(contrast)), contrast, paper, no_effect)
+
+    return Statement(words, paper, part)
 
 
 def shown(
@@ -172,7 +157,7 @@ def verdict(claim: PublishedClaim, statements: Statements, results: Results) -> 
     )
 
 
-def answered(statement: Stated, results: Results) -> StatementPart:
+def answered(statement: Statement, results: Results) -> StatementPart:
     """Answer a statement from a run; what was not run, or does not decide, leaves it undecided."""
 
     def left_open(reason: str, **fields: Any) -> StatementPart:
@@ -215,37 +200,27 @@ class Turned(NamedTuple):
         return Judged("undecided", why)
 
 
-@dataclass(frozen=True)
-class TurnsDown:
-    """The effect is detected above 0 before and below 0 after."""
+def turns_down(subject: str, before: Pair, after: Pair, paper: Printed) -> Statement:
+    """Return the statement that an effect is detected above 0 before and below 0 after.
 
-    subject: str
-    before: Pair
-    after: Pair
-    paper: Printed | None = None
-    """The change that the paper's figures give."""
+    `paper` is the change that the paper's figures give.
+    """
+    words = f"{subject} turns from above 0 to below 0"
 
-    @property
-    def words(self) -> str:
-        """The statement."""
-        return f"{self.subject} turns from above 0 to below 0"
-
-    def part(self, results: Results) -> StatementPart:
-        """Answer the statement from a run."""
-        one, two = together(results, self.before, self.after)
-        turned = Turned(decisive(change(one, two)), one, two)
-        counts = ", then ".join(wording.won(part.won or ()) for part in (one, two))
-        return shown(self.words, turned.judge(), turned.change, self.paper, 0.0, counts)
-
-
-def seeds_that_turn(before: Pair, after: Pair) -> Quantity:
-    """Return in how many seeds the difference is above 0 before and below 0 after."""
-
-    def quantity(results: Results) -> Contrast:
+    def part(results: Results) -> StatementPart:
         one, two = together(results, before, after)
-        if one.n_seeds < ALL_SEEDS:
-            raise Undecidable(f"run with {one.n_seeds} of {ALL_SEEDS} seeds")
-        turning = sum(b > 0 > a for b, a in zip(one.per_seed, two.per_seed, strict=True))
-        return Contrast(float(turning), "seeds", one.n_scenes, against_zero=False)
+        turned = Turned(decisive(change(one, two)), one, two)
+        counts = ", then ".join(wording.won(effect.won or ()) for effect in (one, two))
+        return shown(words, turned.judge(), turned.change, paper, 0.0, counts)
 
-    return quantity
+    return Statement(words, paper, part)
+
+
+@quantity
+def seeds_that_turn(results: Results, before: Pair, after: Pair) -> Contrast:
+    """Return in how many seeds the difference is above 0 before and below 0 after."""
+    one, two = together(results, before, after)
+    if one.n_seeds < ALL_SEEDS:
+        raise Undecidable(f"run with {one.n_seeds} of {ALL_SEEDS} seeds")
+    turning = sum(b > 0 > a for b, a in zip(one.per_seed, two.per_seed, strict=True))
+    return Contrast(float(turning), "seeds", one.n_scenes, against_zero=False)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from faultpath_paper.cells import Printed, published
 from faultpath_paper.claims.rules import ABOVE, BELOW, NO_DIFFERENCE, NO_GAIN, Rule, by_point
-from faultpath_paper.claims.statement import Statement, Statements
+from faultpath_paper.claims.statement import Statement, Statements, stated
 from faultpath_paper.pages import in_text
 from faultpath_paper.pages.table_3 import (
     ENVIRONMENTS,
@@ -32,7 +32,7 @@ Row = tuple[str, str, str]
 def _gap(words: str, first: Row, second: Row, rule: Rule) -> Statement:
     """Compare two entries of Table III: success of the first minus the second."""
     paper = Printed(paper_rate(*first) - paper_rate(*second))
-    return Statement(words, success(cell(*first), cell(*second)), rule, paper)
+    return stated(words, success(cell(*first), cell(*second)), rule, paper)
 
 
 def _l3(variant: str) -> Row:
@@ -41,7 +41,7 @@ def _l3(variant: str) -> Row:
 
 CLAIMS: dict[str, Statements] = {
     "C16": tuple(
-        Statement(
+        stated(
             f"median error of {low} minus that of {high}",
             difference_of_quantiles((in_text.windy_error(first),), (in_text.windy_error(second),)),
             by_point(-1),
@@ -75,14 +75,14 @@ CLAIMS: dict[str, Statements] = {
         _gap("success of GRU minus zero wind at L3", _l3(GRU), _l3(ZERO), ABOVE),
     ),
     "C20": (
-        Statement(
+        stated(
             "success of GRU minus zero wind at L3 with noise and delay",
             success(in_text.noisy_wind(GRU), in_text.noisy_wind(ZERO)),
             ABOVE,
         ),
     ),
     "C21": (
-        Statement(
+        stated(
             "success with the reconstructed wind frozen minus updated, free space at L3",
             success(in_text.WIND_FROZEN, in_text.WIND_UPDATED),
             BELOW,
@@ -98,7 +98,7 @@ CLAIMS: dict[str, Statements] = {
         ),
     ),
     "C43": (
-        Statement(
+        stated(
             "success of the trajectory-trained GRU minus zero wind at L0",
             success(in_text.TRAJECTORY_STILL, cell(ZERO, OBSTACLES, "L0")),
             by_point(-1),
@@ -107,7 +107,7 @@ CLAIMS: dict[str, Statements] = {
     ),
     # The paper sets one flight of a frozen wind beside the mean over all seeds of the zero input.
     "C45": (
-        Statement(
+        stated(
             "success with the reconstructed wind frozen minus zero wind, free space at L3",
             success(replace(in_text.WIND_FROZEN, fixed=True), cell(ZERO, "free-space", "L3")),
             by_point(-1),

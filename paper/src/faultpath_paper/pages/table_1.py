@@ -32,6 +32,16 @@ WM_A_SEEN = Cell(SEEN_THROUGH, "wm-a")
 TRUE_PARAMETER_SEEN = Cell(SEEN_THROUGH, "true-parameter")
 WITH_TRUE_CLEARANCE = (WM_A_SEEN, TRUE_PARAMETER_SEEN)
 
+KEYS = {
+    DKI: "DKI",
+    WM_A: "WM-A",
+    WM_U: "WM-U",
+    TRUE_PARAMETER: "true-parameter",
+    WM_A_SEEN: "WM-A/true-clearance",
+    TRUE_PARAMETER_SEEN: "true-parameter/true-clearance",
+}
+"""Keys as published."""
+
 
 def recording(cell: Cell) -> Recording:
     """Return the flights of a cell's first seed, recorded."""
@@ -55,14 +65,14 @@ def own_error(cell: Cell) -> Measurement:
     return Measurement(recording=recording(cell), quantity="position-error", subject=cell.variant)
 
 
-_PAPER = published("table_1_prediction_accuracy")
+PAPER = published("table_1_prediction_accuracy")
 
 
-def _row(key: str, cell: Cell) -> TableRow:
-    paper = _PAPER[key]
+def _row(cell: Cell) -> TableRow:
+    paper = PAPER[KEYS[cell]]
     ends = (Status.SUCCESS, Status.CRASH, Status.TIMEOUT)
     return TableRow(
-        key.partition("/")[0].replace("true", "True"),
+        KEYS[cell].partition("/")[0].replace("true", "True"),
         (
             centimetres(common_error(cell), paper["error_common_cm"]),
             centimetres(own_error(cell), paper["error_own_cm"]),
@@ -74,7 +84,7 @@ def _row(key: str, cell: Cell) -> TableRow:
 
 def _slower(cell: Cell) -> EntryGroup:
     """Return a predictor's time minus WM-A's where both succeed, with the number of scenes."""
-    paper = _PAPER["paired_time_minus_WM-A_s"][cell.variant if cell != DKI else "DKI"]
+    paper = PAPER["paired_time_minus_WM-A_s"][KEYS[cell]]
     pair = cell, of_seed(WM_A)
 
     def make(results: Results) -> Made:
@@ -84,14 +94,14 @@ def _slower(cell: Cell) -> EntryGroup:
     return EntryGroup(make, (wording.signed(paper["median"], 2), "", printed(paper["n"])), pair)
 
 
-def _over_seeds(cell: Cell, key: str) -> EntryGroup:
+def _over_seeds(cell: Cell) -> EntryGroup:
     """Return the least and the most success of a model's seeds, percent."""
 
     def make(results: Results) -> Made:
         rates = [results.rate(of_seed(cell, seed)).value for seed in results.seeds(cell)]
         return (_range(min(rates), max(rates)),)
 
-    return EntryGroup(make, (_range(*_PAPER["success_range_over_seeds"][key]),), (cell,))
+    return EntryGroup(make, (_range(*PAPER["success_range_over_seeds"][KEYS[cell]]),), (cell,))
 
 
 def _range(least: float, most: float) -> str:
@@ -103,19 +113,15 @@ PAGE = Page(
     (
         table(
             "table-1",
-            _row("DKI", DKI),
-            _row("WM-A", WM_A),
-            _row("WM-U", WM_U),
-            _row("true-parameter", TRUE_PARAMETER),
+            *map(_row, PREDICTORS),
             TableRow("With ground-truth clearance"),
-            _row("WM-A/true-clearance", WM_A_SEEN),
-            _row("true-parameter/true-clearance", TRUE_PARAMETER_SEEN),
+            *map(_row, WITH_TRUE_CLEARANCE),
         ),
         table(
             "table-1b",
             TableRow("DKI", (_slower(DKI), BLANK)),
-            TableRow("WM-A", (BLANK, BLANK, BLANK, _over_seeds(WM_A, "WM-A"))),
-            TableRow("WM-U", (BLANK, BLANK, BLANK, _over_seeds(WM_U, "WM-U"))),
+            TableRow("WM-A", (BLANK, BLANK, BLANK, _over_seeds(WM_A))),
+            TableRow("WM-U", (BLANK, BLANK, BLANK, _over_seeds(WM_U))),
             TableRow("True-parameter", (_slower(TRUE_PARAMETER), BLANK)),
         ),
     ),

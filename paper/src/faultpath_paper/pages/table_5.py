@@ -6,7 +6,7 @@ from faultpath_paper.cells import published
 from faultpath_paper.entries import EntryGroup, Made, decided
 from faultpath_paper.page import Page, TableRow, table
 from faultpath_paper.pages import table_2, table_4
-from faultpath_paper.quantities.crossing import Crossing, Repair, crossing
+from faultpath_paper.quantities.differences import Crossing, Repair, crossing
 from faultpath_paper.results import Results
 
 REPAIRS: dict[str, Repair] = {

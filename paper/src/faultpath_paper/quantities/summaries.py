@@ -13,55 +13,46 @@ from faultpath_paper.cells import Cell, of_seed
 from faultpath_paper.pages import figure_3
 from faultpath_paper.quantities.differences import contrast, joint
 from faultpath_paper.quantities.windows import Subject, difference_of_quantiles, mean_of_medians
-from faultpath_paper.results import NotRun, Quantity, Results, Undecidable, decisive
+from faultpath_paper.results import NotRun, Results, Undecidable, decisive, quantity
 
 Floats = NDArray[np.float64]
 
 
+@quantity
 def at_lower_success(
-    first: tuple[Cell, Subject], second: tuple[Cell, Subject], q: float
-) -> Quantity:
+    results: Results, first: tuple[Cell, Subject], second: tuple[Cell, Subject], q: float
+) -> Contrast:
     """Return a quantile of the error where success is lower (seed 0), minus that at the other.
 
     `Undecidable` when both succeed equally often.
     """
-
-    def quantity(results: Results) -> Contrast:
-        (one, error_one), (two, error_two) = first, second
-        difference = contrast(results, of_seed(one), of_seed(two)).value
-        if difference == 0:
-            raise Undecidable("both conditions succeed equally often")
-        ordered = (error_one, error_two) if difference < 0 else (error_two, error_one)
-        return difference_of_quantiles(*ordered, q)(results)
-
-    return quantity
+    (one, error_one), (two, error_two) = first, second
+    difference = contrast(results, of_seed(one), of_seed(two)).value
+    if difference == 0:
+        raise Undecidable("both conditions succeed equally often")
+    ordered = (error_one, error_two) if difference < 0 else (error_two, error_one)
+    return difference_of_quantiles(*ordered, q)(results)
 
 
-def share(cells: Sequence[Cell], end: bool) -> Quantity:
+@quantity
+def share(results: Results, cells: Sequence[Cell], end: bool) -> Contrast:
     """Return the share of scenes in which all cells succeed (`end`), or all fail, seed 0."""
-
-    def quantity(results: Results) -> Contrast:
-        own = [of_seed(cell) for cell in cells]
-        every = joint(results, *((cell, cell) for cell in own))
-        ends = np.stack([pairs.ended(Status.SUCCESS)[0][:, 0] == end for pairs in every])
-        return decisive(success_rate(np.all(ends, axis=0), results.resamples(every[0])))
-
-    return quantity
+    own = [of_seed(cell) for cell in cells]
+    every = joint(results, *((cell, cell) for cell in own))
+    ends = np.stack([pairs.ended(Status.SUCCESS)[0][:, 0] == end for pairs in every])
+    return decisive(success_rate(np.all(ends, axis=0), results.resamples(every[0])))
 
 
-def rank_correlation(cells: Sequence[tuple[Cell, Subject]]) -> Quantity:
+@quantity
+def rank_correlation(results: Results, cells: Sequence[tuple[Cell, Subject]]) -> Contrast:
     """Return Spearman's correlation of success with the median of something measured."""
-
-    def quantity(results: Results) -> Contrast:
-        rates = [results.rate(cell) for cell, _ in cells]
-        measured = np.array([mean_of_medians(results, subject) for _, subject in cells])
-        value = spearman(np.array([rate.value for rate in rates]), measured)
-        if value is None:
-            raise Undecidable("one side is the same in all cells")
-        n_scenes = min(rate.n_scenes for rate in rates)
-        return Contrast(value, "rank correlation", n_scenes, against_zero=False)
-
-    return quantity
+    rates = [results.rate(cell) for cell, _ in cells]
+    measured = np.array([mean_of_medians(results, subject) for _, subject in cells])
+    value = spearman(np.array([rate.value for rate in rates]), measured)
+    if value is None:
+        raise Undecidable("one side is the same in all cells")
+    n_scenes = min(rate.n_scenes for rate in rates)
+    return Contrast(value, "rank correlation", n_scenes, against_zero=False)
 
 
 def spearman(one: Floats, two: Floats) -> float | None:
@@ -98,29 +89,23 @@ class _Sweep:
         return decisive(Contrast(value, unit, self.n_scenes, draws=draws, against_zero=False))
 
 
-def worst(model: str) -> Quantity:
+@quantity
+def worst(results: Results, model: str) -> Contrast:
     """Return the least success of a model over the sweep, in percent."""
-
-    def quantity(results: Results) -> Contrast:
-        sweep = _sweep(results, model)
-        return sweep.contrast(sweep.rates[0].min(axis=1), "percent")
-
-    return quantity
+    sweep = _sweep(results, model)
+    return sweep.contrast(sweep.rates[0].min(axis=1), "percent")
 
 
-def range_gained(first: str, second: str) -> Quantity:
+@quantity
+def range_gained(results: Results, first: str, second: str) -> Contrast:
     """Return how many more errors of the sweep one model tolerates around 0 than another.
 
     They are counted outwards from 0, on each side to the first error at which success is below
     `PEAK_PERCENT`.
     """
-
-    def quantity(results: Results) -> Contrast:
-        sweep = _sweep(results, first, second)
-        one, two = (_borne(rates, sweep.errors.index(0.0)) for rates in sweep.rates)
-        return sweep.contrast(one - two, "errors")
-
-    return quantity
+    sweep = _sweep(results, first, second)
+    one, two = (_borne(rates, sweep.errors.index(0.0)) for rates in sweep.rates)
+    return sweep.contrast(one - two, "errors")
 
 
 def _sweep(results: Results, *models: str) -> _Sweep:

@@ -1,6 +1,6 @@
 """Quantities of recorded windows: quantiles of errors and responses, compared on common windows."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import lru_cache
@@ -9,70 +9,99 @@ from typing import TypeAlias
 import numpy as np
 
 from faultpath.stats.contrast import Contrast, weighted_sum
+from faultpath.stats.inputs import Numbers, by_scene_and_seed
+from faultpath.stats.resamples import Resamples, quantiles
 from faultpath_paper.evidence.table import QUANTITIES, EvidenceTable, Measured, Measurement
-from faultpath_paper.quantities.window_quantiles import WindowQuantiles
-from faultpath_paper.results import NotRun, Quantity, Results, Undecidable, decisive
+from faultpath_paper.results import NotRun, Results, Undecidable, decisive, quantity
+
+
+class WindowQuantiles:
+    """Quantiles over the windows of some scenes, all on the same resamples of these scenes.
+
+    Windows of a scene share its trial and disturbances, so they are not independent: a resample
+    takes or leaves a scene with all its windows. The scenes themselves name the resamples' stream.
+
+    Args:
+        scenes: Scene of each window, [windows].
+        n_resamples: How many.
+    """
+
+    def __init__(self, scenes: Sequence[str], n_resamples: int = 10_000) -> None:
+        if not scenes:
+            raise ValueError("no window, so there is no quantile")
+        names, self._scene = np.unique(np.asarray(scenes), return_inverse=True)
+        label = "windows/" + "/".join(map(str, names))
+        self.resamples = Resamples.draw(label, len(names), seed=0, n_resamples=n_resamples)
+
+    def value(self, values: Numbers, q: float, unit: str = "") -> Contrast:
+        """Return the quantile `q` of `values` [windows], of one seed."""
+        column, n_scenes = by_scene_and_seed(values)[:, 0], self.resamples.n_scenes
+        if len(column) != len(self._scene):
+            raise ValueError(f"{len(column)} values are not of {len(self._scene)} windows")
+        counts = np.concatenate([np.ones((1, n_scenes)), self.resamples.counts])
+        rows = quantiles(counts, column, self._scene, q)
+        return Contrast(
+            value=float(rows[0]),
+            draws=rows[1:],
+            per_seed=(float(rows[0]),),
+            unit=unit,
+            method=f"quantile {q:g} over windows, percentile bootstrap of scenes",
+            n_scenes=n_scenes,
+            resamples=self.resamples,
+        )
+
 
 Subject: TypeAlias = tuple[Measurement, ...]
-"""A measurement of each seed: the quantile is taken seed by seed, and then the mean."""
+"""A measurement of each seed: the quantile is taken seed by seed, and then the mean (paper,
+Table VI: "mean of per-seed window medians")."""
 
 TELLING_SHARE = 0.2
 """A share of a median whose change a run must be able to detect for its absence to say anything."""
 
 
-def median(subject: Subject) -> Quantity:
+@quantity
+def median(results: Results, subject: Subject) -> Contrast:
     """Return the median of a subject."""
-
-    def quantity(results: Results) -> Contrast:
-        (one,) = quantiles(results, 0.5, subject)
-        return decisive(replace(one, against_zero=False))
-
-    return quantity
+    (one,) = joint_quantiles(results, 0.5, subject)
+    return decisive(replace(one, against_zero=False))
 
 
-def difference_of_quantiles(first: Subject, second: Subject, q: float = 0.5) -> Quantity:
+@quantity
+def difference_of_quantiles(
+    results: Results, first: Subject, second: Subject, q: float = 0.5
+) -> Contrast:
     """Return a quantile of `first` minus that of `second`."""
-
-    def quantity(results: Results) -> Contrast:
-        one, two = quantiles(results, q, first, second)
-        return decisive(weighted_sum([1, -1], [one, two]), TELLING_SHARE * two.value)
-
-    return quantity
+    one, two = joint_quantiles(results, q, first, second)
+    return decisive(weighted_sum([1, -1], [one, two]), TELLING_SHARE * two.value)
 
 
+@quantity
 def difference_of_changes(
-    first: tuple[Subject, Subject], second: tuple[Subject, Subject], *, size: bool
-) -> Quantity:
+    results: Results, first: tuple[Subject, Subject], second: tuple[Subject, Subject], *, size: bool
+) -> Contrast:
     """Return how much more the median changes over `first`, from one to the next, than `second`.
 
     `size`: changes are compared whatever their sign.
     """
-
-    def quantity(results: Results) -> Contrast:
-        ends = quantiles(results, 0.5, *first, *second)
-        changes = [weighted_sum([-1, 1], ends[:2]), weighted_sum([-1, 1], ends[2:])]
-        if size:
-            changes = [replace(c, value=abs(c.value), draws=np.abs(c.draws)) for c in changes]
-        return decisive(weighted_sum([1, -1], changes))
-
-    return quantity
+    ends = joint_quantiles(results, 0.5, *first, *second)
+    changes = [weighted_sum([-1, 1], ends[:2]), weighted_sum([-1, 1], ends[2:])]
+    if size:
+        changes = [replace(c, value=abs(c.value), draws=np.abs(c.draws)) for c in changes]
+    return decisive(weighted_sum([1, -1], changes))
 
 
-def ratio(first: Subject, second: Subject) -> Quantity:
+@quantity
+def ratio(results: Results, first: Subject, second: Subject) -> Contrast:
     """Return the median of `first` over that of `second`."""
-
-    def quantity(results: Results) -> Contrast:
-        one, two = quantiles(results, 0.5, first, second)
-        if not (two.value > 0 and bool((two.draws > 0).all())):
-            raise Undecidable("the median that is divided by is 0")
-        draws = one.draws / two.draws
-        value = one.value / two.value
-        return decisive(replace(one, value=value, draws=draws, unit="times", against_zero=False))
-
-    return quantity
+    one, two = joint_quantiles(results, 0.5, first, second)
+    if not (two.value > 0 and bool((two.draws > 0).all())):
+        raise Undecidable("the median that is divided by is 0")
+    draws = one.draws / two.draws
+    value = one.value / two.value
+    return decisive(replace(one, value=value, draws=draws, unit="times", against_zero=False))
 
 
-def quantiles(results: Results, q: float, *subjects: Subject) -> list[Contrast]:
+def joint_quantiles(results: Results, q: float, *subjects: Subject) -> list[Contrast]:
     """Return a quantile of each subject on shared resamples, over the seeds that all have.
 
     A subject of one seed stands beside all seeds of the others. `NotRun` when a subject was not

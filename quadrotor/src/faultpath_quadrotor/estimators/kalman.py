@@ -16,7 +16,6 @@ import torch
 from torch import Tensor
 
 from faultpath_quadrotor import so3
-from faultpath_quadrotor.angles import sine_cosine
 from faultpath_quadrotor.estimators.sensors import SAMPLE_DT_S, SAMPLES, Sensor
 from faultpath_quadrotor.vehicle import CONTROL_DT_S, GRAVITY_MPS2
 
@@ -189,7 +188,7 @@ def corrected(
     if "heading" in read:
         r = belief.rotation
         difference = read["heading"] - so3.heading(r)
-        residual = torch.atan2(*sine_cosine(difference))
+        residual = torch.atan2(*so3.sine_cosine(difference))
         level = (r[0, 0].square() + r[1, 0].square()).clamp_min(1e-3)
         about = {
             7: (r[1, 0] * r[0, 2] - r[0, 0] * r[1, 2]) / level,

@@ -2,6 +2,6 @@
 
 from faultpath_quadrotor.perception.camera import CaptureFrame, mounted
 from faultpath_quadrotor.perception.clearance import ClearanceModel
-from faultpath_quadrotor.perception.depth_clearance import DepthClearance, PerceptionSettings
 from faultpath_quadrotor.perception.labels import visible_distance
+from faultpath_quadrotor.perception.module import DepthClearance, PerceptionSettings
 from faultpath_quadrotor.perception.render import DepthRenderer

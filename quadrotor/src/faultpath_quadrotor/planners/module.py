@@ -1,17 +1,17 @@
 """The planner as a module of the loop: it asks where candidates lead, and decides."""
 
 import hashlib
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache, partial
 
 import torch
 from torch import Tensor
 
 from faultpath.loop import Batch, Inputs, Memory, Module, Outputs, Port
-from faultpath_quadrotor.batching import Chunk, into_chunks, lanes_last, lanes_of
+from faultpath_quadrotor.batching import Chunk, into_chunks
 from faultpath_quadrotor.device import host_readable, send
-from faultpath_quadrotor.planners import Planner, Scored, shift
+from faultpath_quadrotor.planners.base import Planner, Search, shift
+from faultpath_quadrotor.planners.costs import Scored
 from faultpath_quadrotor.predictors.rollout import Candidates, Predicted
 
 ROLLOUT = Port("rollout", "candidates")
@@ -19,19 +19,14 @@ HOVER_THRUST = Port("hover", "reference")
 GOAL = Port("goal", "goal_cost")
 CLEARANCE = Port("clearance", "risk_cost")
 
-
-@dataclass(frozen=True)
-class _Plans:
-    """Plan that the planner keeps between steps."""
-
-    batch: Batch
-    lanes: Tensor
-    plan: Tensor | None = None
-    """`[H, 4, L]`: where the next step's search starts."""
+Chunks = Sequence[Chunk]
 
 
 class PlannerModule(Module):
-    """Plans for the scenes that still run, some of them at a time."""
+    """Plans for the scenes that still run, some of them at a time.
+
+    What it remembers is the batch and the plan `[H, 4, B]` where the next step's search starts.
+    """
 
     name, writes = "planner", ("commanded_action",)
     reads = frozenset({ROLLOUT, HOVER_THRUST, GOAL, CLEARANCE})
@@ -50,7 +45,7 @@ class PlannerModule(Module):
 
     def begin(self, batch: Batch) -> Memory:
         """Return a memory without a plan."""
-        return _Plans(batch, lanes_of(batch, self._device))
+        return batch, None
 
     def before(self, batch: Batch) -> Outputs:
         """Return the command that was executed before the flight: the vehicles hovered."""
@@ -63,39 +58,41 @@ class PlannerModule(Module):
 
     def step(self, inputs: Inputs, memory: Memory) -> tuple[Outputs, Memory]:
         """Return the command, `[B, 4]`, N and rad/s; scenes that do not run get the hover."""
-        plans: _Plans = memory
-        batch, planner = plans.batch, self._planner
-        hover_thrust = lanes_last(inputs[HOVER_THRUST], plans.lanes)
-        goal = lanes_last(inputs[GOAL], plans.lanes).float()
-        hovering = planner.initial_plan(hover_thrust)
-        plan = hovering if plans.plan is None else plans.plan
-        command = hovering[0].clone()
-
-        # Start, then sample, score and update as often as the planner asks, then finish.
+        planner, (batch, plan) = self._planner, memory
+        hover: Tensor = inputs[HOVER_THRUST]
+        hovering = planner.initial_plan(hover)
+        plan = hovering.clone() if plan is None else plan
         chunks = self._chunks(tuple(_planned(inputs)))
-        searches = [planner.init(plan[..., c.rows], hover_thrust[c.rows]) for c in chunks]
+
+        searches = [planner.init(plan[..., c.rows], hover[c.rows]) for c in chunks]
         for iteration in range(planner.iterations):
-            noise = (self._noise(batch, chunk, inputs.step, iteration) for chunk in chunks)
+            noise = self._noise(batch, chunks, inputs.step, iteration)
             commands = tuple(map(planner.propose, searches, noise))
-            predicted: Predicted = inputs[ROLLOUT](Candidates(len(batch.scenes), chunks, commands))
-            clearance = inputs[CLEARANCE](predicted)
-            scored = (
-                Scored(rollout, drawn, clearance[chunk.rows], goal[:, chunk.rows], search.hover)
-                for chunk, search, rollout, drawn in zip(
-                    chunks, searches, predicted.rollouts, commands, strict=True
-                )
-            )
+            scored = _scored(inputs, chunks, searches, commands)
             searches = list(map(planner.update, searches, scored))
+
+        command = hovering[0]
         for chunk, search in zip(chunks, searches, strict=True):
             command[:, chunk.rows] = search.plan[0]
             plan[..., chunk.rows] = shift(search.plan)
-        commanded = command[:, : len(batch.scenes)].T.double()
-        return {"commanded_action": commanded}, _Plans(batch, plans.lanes, plan)
+        return {"commanded_action": command.T.double()}, (batch, plan)
 
-    def _noise(self, batch: Batch, chunk: Chunk, step: int, iteration: int) -> Tensor:
-        scenes = [batch.scenes[i] for i in chunk.scenes]
-        drawn = self._planner.noise(scenes, batch.seed, step, iteration)
-        return send(drawn, chunk.index.device)
+    def _noise(self, batch: Batch, chunks: Chunks, step: int, iteration: int) -> Iterator[Tensor]:
+        for chunk in chunks:
+            scenes = [batch.scenes[i] for i in chunk.scenes]
+            yield send(self._planner.noise(scenes, batch.seed, step, iteration), chunk.index.device)
+
+
+def _scored(
+    inputs: Inputs, chunks: Chunks, searches: Sequence[Search], commands: tuple[Tensor, ...]
+) -> Iterator[Scored]:
+    """Ask the predictor where commands lead, and the clearance along the way; yield both."""
+    goal = inputs[GOAL].T.float()
+    predicted: Predicted = inputs[ROLLOUT](Candidates(goal.shape[1], tuple(chunks), commands))
+    clearance = inputs[CLEARANCE](predicted)
+    parts = zip(chunks, searches, predicted.rollouts, commands, strict=True)
+    for chunk, search, rollout, drawn in parts:
+        yield Scored(rollout, drawn, clearance[chunk.rows], goal[:, chunk.rows], search.hover)
 
 
 def _planned(inputs: Inputs) -> Sequence[int]:

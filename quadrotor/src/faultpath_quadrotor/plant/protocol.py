@@ -1,19 +1,61 @@
-"""Plants as the world flies them, whatever integrates the motion."""
+"""Plants as the world flies them, whatever integrates the motion, and the vehicles they fly."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import ClassVar
 
+import numpy as np
 import torch
 from torch import Tensor
 
-from faultpath_quadrotor.plant.vehicle_batch import Vehicle
 from faultpath_quadrotor.scenes.geometry import Geometry
 from faultpath_quadrotor.state import Batched, State
-from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M, PLANT_RATE_HZ
+from faultpath_quadrotor.vehicle import (
+    COLLISION_RADIUS_M,
+    GRAVITY_MPS2,
+    PLANT_RATE_HZ,
+    VehicleParameters,
+)
+
+
+@dataclass(frozen=True)
+class Vehicle(Batched):
+    """A batch of vehicles as tensors; `*b` is the batch shape."""
+
+    mass_kg: Tensor
+    """[*b]"""
+    thrust_scale: Tensor
+    """Realised thrust over commanded, [*b]: acceleration is `thrust_scale * u / mass_kg`."""
+    torque_scale: Tensor
+    """Realised torque over commanded, [*b]."""
+    inertia_kgm2: Tensor
+    """Principal moments along the body axes, [3, *b]."""
+    motor_time_constant_s: Tensor
+    """[*b]"""
+    drag_kgps: Tensor
+    """Linear drag along the body axes, [3, *b]."""
+
+    @classmethod
+    def stack(cls, parameters: Sequence[VehicleParameters]) -> Vehicle:
+        """Return the vehicles of a list as one batch, float64, in its order."""
+        names = [field.name for field in fields(cls)]
+        columns = (np.array([getattr(p, name) for p in parameters], np.float64) for name in names)
+        return cls(*(torch.from_numpy(column.T.copy()) for column in columns))
+
+    @property
+    def hover_thrust_n(self) -> Tensor:
+        """Collective thrust command that balances the weight, N, [*b]."""
+        return self.mass_kg * GRAVITY_MPS2 / self.thrust_scale
+
+    def hover_command(self) -> Tensor:
+        """Return the command that holds a level vehicle at rest, [4, *b]."""
+        thrust = self.hover_thrust_n
+        return torch.cat((thrust[None], torch.zeros(3, *thrust.shape).to(thrust)))
+
 
 CONTACT_EVERY = 5
 """Plant steps between contact checks: 10 ms, 3.4 cm at the planner's top speed."""

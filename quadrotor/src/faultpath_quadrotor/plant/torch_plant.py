@@ -2,18 +2,146 @@
 
 from __future__ import annotations
 
+import math
+
 import torch
 from torch import Tensor
 
-from faultpath_quadrotor import native
+from faultpath_quadrotor import native, so3
 from faultpath_quadrotor.native.kernel_args import covered
-from faultpath_quadrotor.plant import motors
 from faultpath_quadrotor.plant.compiled import CompiledPlant
-from faultpath_quadrotor.plant.motors import RateLoop
-from faultpath_quadrotor.plant.protocol import Plant, PlantState, Standing
-from faultpath_quadrotor.plant.vehicle_batch import Vehicle
+from faultpath_quadrotor.plant.protocol import Plant, PlantState, Standing, Vehicle
 from faultpath_quadrotor.state import State
-from faultpath_quadrotor.vehicle import COLLECTIVE_MAX_N, GRAVITY_MPS2, PLANT_DT_S, RATE_LIMIT_RADPS
+from faultpath_quadrotor.vehicle import (
+    ARM_LENGTH_M,
+    COLLECTIVE_MAX_N,
+    GRAVITY_MPS2,
+    MOTOR_THRUST_MAX_N,
+    PLANT_DT_S,
+    RATE_GAIN_PER_S,
+    RATE_LIMIT_RADPS,
+    TORQUE_COEFFICIENT_M,
+)
+
+_ARM = ARM_LENGTH_M * math.sqrt(0.5)
+WRENCH_PER_THRUST = (
+    (1.0, 1.0, 1.0, 1.0),
+    (_ARM, _ARM, -_ARM, -_ARM),  # y of the motors
+    (-_ARM, _ARM, _ARM, -_ARM),  # minus x
+    tuple(sign * TORQUE_COEFFICIENT_M for sign in (1.0, -1.0, 1.0, -1.0)),
+)
+"""Collective thrust (N) and body torque (N m) per newton of each motor: 4 x 4 with orthogonal
+rows, so its inverse is its transpose over the rows' squared norms."""
+
+
+def column(values: tuple, like: Tensor) -> Tensor:
+    """Return constants with one trailing axis of length 1 per batch axis of `like` [*b]."""
+    constant = like.new_tensor(values)
+    return constant.reshape(*constant.shape, *(1,) * like.ndim)
+
+
+def acceleration_per_thrust(vehicle: Vehicle) -> Tensor:
+    """Return realised acceleration per newton of each motor, [4, 4, *b].
+
+    Row 0 is m/s^2 along body z and carries the thrust scale, rows 1-3 are rad/s^2 and carry the
+    torque scale: each multiplies the realised value, not the commanded one.
+    """
+    thrust = vehicle.thrust_scale / vehicle.mass_kg
+    torque = vehicle.torque_scale / vehicle.inertia_kgm2
+    return column(WRENCH_PER_THRUST, vehicle.mass_kg) * torch.cat((thrust[None], torque))[:, None]
+
+
+def lag_weights(time_constant_s: Tensor, dt_s: float) -> tuple[Tensor, Tensor]:
+    """Return what is left of the gap to a constant command at a step's end, and on average, [*b].
+
+    Both exact: exp(-h) and (1 - exp(-h)) / h with h the step over the time constant.
+    """
+    h = dt_s / time_constant_s
+    return torch.exp(-h), -torch.expm1(-h) / h
+
+
+def gyroscopic_coupling(vehicle: Vehicle) -> Tensor:
+    """Return (Iy - Iz) / Ix and its cyclic companions, [3, *b]."""
+    x, y, z = vehicle.inertia_kgm2.unbind(0)
+    return torch.stack(((y - z) / x, (z - x) / y, (x - y) / z))
+
+
+def gyroscopic(coupling: Tensor, rate: Tensor) -> Tensor:
+    """Return the torque-free angular acceleration -I^-1 (rate x I rate), [3, *b] rad/s^2."""
+    cyclic = torch.cat((rate, rate[:2]))
+    return (cyclic[1:4] * cyclic[2:5]).mul_(coupling)
+
+
+def turn(
+    rotation: Tensor, rate: Tensor, torque: Tensor, coupling: Tensor, free: Tensor, dt_s: float
+) -> tuple[Tensor, Tensor]:
+    """Return attitude and body rate after `dt_s`: explicit midpoint, exponential map.
+
+    `torque` [3, *b] is the step's mean angular acceleration from torque, `free` [3, *b] the
+    gyroscopic one at its start, both rad/s^2. Second order.
+    """
+    middle = torch.add(rate, torque + free, alpha=0.5 * dt_s)
+    end = torch.add(rate, gyroscopic(coupling, middle).add_(torque), alpha=dt_s)
+    return so3.compose(rotation, so3.exp(middle.mul_(dt_s))), end
+
+
+class RateLoop:
+    """Proportional rate control with gyroscopic feed-forward, a mixer and per-motor limits.
+
+    The torque commanded is I K (command - rate) + rate x I rate. The controller knows the vehicle's
+    inertia but neither its scales nor its motor lag, so the loop's true gain is the torque scale
+    times K. Where motors cannot give it all, yaw gives way first, as its motor strokes are the
+    longest (Faessler et al. 2017, "Thrust Mixing, Saturation, and Body-Rate Control"); then each
+    motor is clipped by itself.
+    """
+
+    per_acceleration: Tensor
+    """Thrust of each motor per angular acceleration about each axis, [3, 4, *b]."""
+
+    def __init__(self, vehicle: Vehicle) -> None:
+        like = vehicle.mass_kg
+        wrench = column(WRENCH_PER_THRUST, like)
+        inverse = wrench / (wrench * wrench).sum(1, keepdim=True)
+        self.per_acceleration = inverse[1:] * vehicle.inertia_kgm2[:, None]
+        self._gain = column(RATE_GAIN_PER_S, like)
+        self._roll, self._pitch = self.per_acceleration[0], self.per_acceleration[1]
+        self._yaw = self.per_acceleration[2, 0]
+        self._ceiling = column((MOTOR_THRUST_MAX_N,), like)
+        self._spin = column(WRENCH_PER_THRUST[3], like).sign()
+
+    def target(self, rate_command: Tensor) -> Tensor:
+        """Return K times the command [3, *b]: constant while the command is."""
+        return self._gain * rate_command
+
+    def motor_commands(
+        self, level: Tensor, target: Tensor, rate: Tensor, gyroscopic: Tensor
+    ) -> Tensor:
+        """Return the four motors' commands, [4, *b] N, each within its limits.
+
+        `level` [*b] is a quarter of the collective command in N, `target` [3, *b] comes from
+        `target`, `rate` [3, *b] is the body rate and `gyroscopic` [3, *b] the angular
+        acceleration that it causes by itself, rad/s^2.
+        """
+        acceleration = torch.addcmul(target, self._gain, rate, value=-1.0).sub_(gyroscopic)
+        roll, pitch, yaw = acceleration.unbind(0)
+        thrusts = torch.addcmul(level, self._roll, roll).addcmul_(self._pitch, pitch)
+        thrusts = thrusts.clamp_(0.0, MOTOR_THRUST_MAX_N)
+        room = torch.minimum(thrusts, self._ceiling - thrusts).amin(0)
+        stroke = torch.clamp(self._yaw * yaw, -room, room)
+        return thrusts.addcmul_(self._spin, stroke)
+
+
+def relaxation(vehicle: Vehicle, dt_s: float) -> Tensor:
+    """Return the part of the air-relative velocity that drag takes in one step, [3, *b].
+
+    Exact for a fixed attitude: 1 - exp(-c dt / m) along each body axis.
+    """
+    return -torch.expm1(vehicle.drag_kgps * (-dt_s / vehicle.mass_kg))
+
+
+def velocity_change(rotation: Tensor, air_velocity: Tensor, relaxed: Tensor) -> Tensor:
+    """Return the world-frame velocity [3, *b] that drag adds for air-relative w - v [3, *b]."""
+    return so3.rotate(rotation, so3.rotate_back(rotation, air_velocity).mul_(relaxed))
 
 
 class TorchPlant(Plant):
@@ -31,16 +159,16 @@ class TorchPlant(Plant):
         super().__init__(vehicle)
         like = vehicle.mass_kg
         self._dt_s = dt_s
-        self._rate_limit = motors.column(RATE_LIMIT_RADPS, like)
+        self._rate_limit = column(RATE_LIMIT_RADPS, like)
         self._loop = RateLoop(vehicle)
-        self._left_end, self._left_mean = motors.lag_weights(vehicle.motor_time_constant_s, dt_s)
-        self._coupling = motors.gyroscopic_coupling(vehicle)
+        self._left_end, self._left_mean = lag_weights(vehicle.motor_time_constant_s, dt_s)
+        self._coupling = gyroscopic_coupling(vehicle)
         # The attitude in mid step is taken as the mean of both ends, which is second order. The
         # step below uses their sum; the halves that this leaves out are in these constants.
-        self._acceleration = motors.acceleration_per_thrust(vehicle)
+        self._acceleration = acceleration_per_thrust(vehicle)
         self._acceleration[0] *= 0.5 * dt_s * 0.5
-        self._relaxed = motors.relaxation(vehicle, dt_s) * 0.25
-        self._gravity_kick = motors.column((0.0, 0.0, -GRAVITY_MPS2 * 0.5 * dt_s), like)
+        self._relaxed = relaxation(vehicle, dt_s) * 0.25
+        self._gravity_kick = column((0.0, 0.0, -GRAVITY_MPS2 * 0.5 * dt_s), like)
         kernels = native.kernels_on(like.device)
         fits = like.ndim == 1 and like.dtype == torch.float64
         self._compiled = None
@@ -74,19 +202,19 @@ class TorchPlant(Plant):
         self, plant_state: PlantState, level: Tensor, target: Tensor, wind_mps: Tensor
     ) -> PlantState:
         state, dt_s = plant_state.state, self._dt_s
-        free = motors.gyroscopic(self._coupling, state.rate)
+        free = gyroscopic(self._coupling, state.rate)
         commands = self._loop.motor_commands(level, target, state.rate, free)
         thrusts = torch.lerp(commands, plant_state.thrusts, self._left_end)
         mean = torch.lerp(commands, plant_state.thrusts, self._left_mean)
         kick_and_torque = (self._acceleration * mean).sum(1)
 
-        rotation, rate = motors.turn(
+        rotation, rate = turn(
             state.rotation, state.rate, kick_and_torque[1:], self._coupling, free, dt_s
         )
         twice_middle = state.rotation + rotation
         kick = (twice_middle[:, 2] * kick_and_torque[0]).add_(self._gravity_kick)
         velocity = state.velocity + kick
-        drag = motors.velocity_change(twice_middle, wind_mps - velocity, self._relaxed)
+        drag = velocity_change(twice_middle, wind_mps - velocity, self._relaxed)
         velocity = velocity.add_(drag).add_(kick)
         position = torch.add(state.position, state.velocity + velocity, alpha=0.5 * dt_s)
         return PlantState(State(position, velocity, rotation, rate), thrusts)

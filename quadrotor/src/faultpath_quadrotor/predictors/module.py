@@ -1,13 +1,19 @@
-"""The predictor as a module of the loop: a query from commands to motion."""
+"""The predictor as modules of the loop: its queries, and its memory of the executed flight."""
+
+from dataclasses import dataclass
 
 import torch
+from torch import Tensor
 from typing_extensions import override
 
 from faultpath.loop import Batch, Memory, Outputs, Query
 from faultpath_quadrotor.batching import Delivered, LaneModule
 from faultpath_quadrotor.predictors import Predictor
-from faultpath_quadrotor.predictors.base import hover_thrust
-from faultpath_quadrotor.predictors.predictor_inputs import ports, predictor_inputs, single
+from faultpath_quadrotor.predictors.base import (
+    history,
+    ports,
+    predictor_inputs,
+)
 from faultpath_quadrotor.predictors.rollout import Candidates, Predicted, Roll, rolling
 
 
@@ -29,8 +35,7 @@ class PredictorModule(LaneModule):
 
     @override
     def compute(self, readings: Delivered, step: int, memory: Roll) -> tuple[Outputs, Roll]:
-        known = predictor_inputs(self._predictor.reads, single(readings))
-        hover = hover_thrust(known.delivered, "trim")[:, 0]
+        known = predictor_inputs(self._predictor.reads, lambda *read: readings[read])
 
         def predict(candidates: Candidates) -> Predicted:
             rollouts = (
@@ -40,4 +45,57 @@ class PredictorModule(LaneModule):
             return Predicted(candidates.count, candidates.chunks, tuple(rollouts))
 
         motion = Query(predict, Predicted.motion, Predicted.moved)
-        return {"predicted_motion": motion, "hover_thrust": hover}, memory
+        return {"predicted_motion": motion, "hover_thrust": known.hover_thrust}, memory
+
+
+STEPS = 12  # paper, Section IV-A
+
+MOTION = ("velocity", "attitude", "body_rate")
+
+
+@dataclass(frozen=True)
+class _Past:
+    """The last intervals of every lane, as delivered when they were new."""
+
+    intervals: tuple[tuple[dict[str, Tensor], Tensor], ...]
+    """Motion at the start of each, and the command executed over it."""
+    latest: dict[str, Tensor]
+
+
+class HistoryEncoder(LaneModule):
+    """Encodes the last 12 intervals of every lane, once a step.
+
+    Before the flight the vehicle hovered where it is first seen, under the command that was
+    executed then. The supplied mass normalises the whole record anew at each step.
+    """
+
+    name, writes = "predictor", ("history_encoding",)
+
+    def __init__(self, predictor: Predictor, device: torch.device) -> None:
+        super().__init__(device)
+        self._predictor = predictor
+        reads = ports({"history", "features"} & predictor.reads)
+        self.reads_past = frozenset(port for port in reads if port.channel == "action")
+        self.reads = reads - self.reads_past
+
+    @override
+    def compute(
+        self, readings: Delivered, step: int, memory: _Past | None
+    ) -> tuple[Outputs, _Past]:
+        motion = {name: readings[name, "history"].float() for name in MOTION}
+        command = readings["action", "history"].float()
+        if memory is None:
+            intervals = ((motion, command),) * STEPS
+        else:
+            intervals = (*memory.intervals[1:], (memory.latest, command))
+        motions, commands = zip(*intervals, strict=True)
+
+        def recalled(channel: str, place: str) -> Tensor:
+            if channel == "mass" or place != "history":
+                return readings[channel, place]
+            if channel == "action":
+                return torch.stack(commands, 1)
+            return torch.stack([motion[channel] for motion in motions], motion[channel].ndim - 1)
+
+        code = self._predictor.encode(history(self._predictor.reads, recalled))
+        return {"history_encoding": code}, _Past(intervals, motion)

@@ -1,13 +1,16 @@
-"""Reconstructions of a channel that no sensor supplies."""
+"""Reconstructions of a channel that no sensor supplies, and the loop's module that runs one."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from os import PathLike
 from typing import Any, TypeAlias
 
+import torch
 from torch import Tensor
+from typing_extensions import override
 
-from faultpath_quadrotor.batching import Delivered, Read
+from faultpath.loop import Outputs, Port
+from faultpath_quadrotor.batching import Delivered, LaneModule, Read
 
 Memory: TypeAlias = Any
 """State that a reconstruction carries from step to step; opaque to everybody else."""
@@ -41,3 +44,22 @@ class Reconstruction(ABC):
     @abstractmethod
     def wind(self, memory: Memory) -> Tensor:
         """Return the current estimate `[3, *batch]`, m/s, world frame."""
+
+
+class WindModule(LaneModule):
+    """Turns completed intervals into the wind that the predictor assumes."""
+
+    name, writes = "reconstruction", ("reconstructed_wind",)
+
+    def __init__(self, reconstruction: Reconstruction, device: torch.device) -> None:
+        super().__init__(device)
+        self._reconstruction = reconstruction
+        reads = frozenset(Port(*read) for read in reconstruction.reads)
+        self.reads_past = frozenset(port for port in reads if port.channel == "action")
+        self.reads = reads - self.reads_past
+
+    @override
+    def compute(self, readings: Delivered, step: int, memory: Any) -> tuple[Outputs, Any]:
+        model = self._reconstruction
+        known = model.begin(readings) if memory is None else model.update(memory, readings)
+        return {"reconstructed_wind": model.wind(known)}, known

@@ -11,9 +11,9 @@ from torch import Tensor, nn
 from typing_extensions import override
 
 from faultpath_quadrotor.batching import Delivered, Read
-from faultpath_quadrotor.predictors.history import STEPS
+from faultpath_quadrotor.predictors.base import STATE as CHANNELS
+from faultpath_quadrotor.predictors.module import STEPS
 from faultpath_quadrotor.predictors.network import Affine, GatedCell, draw_weights
-from faultpath_quadrotor.predictors.predictor_inputs import STATE as CHANNELS
 from faultpath_quadrotor.reconstruction.base import Memory, Reconstruction
 
 STATE = 18  # position, velocity, rotation matrix, body rate (paper, Section IV-A)

@@ -23,9 +23,9 @@ from torch import Tensor
 from faultpath_quadrotor import native
 from faultpath_quadrotor.native.kernel_args import Block, covered, fields, lend, output
 from faultpath_quadrotor.scenes.geometry import rectangle_distance
+from faultpath_quadrotor.scenes.library import CELL_M
 from faultpath_quadrotor.scenes.prisms import RoundedPrism, arena, solids
 from faultpath_quadrotor.scenes.scene import Scene
-from faultpath_quadrotor.scenes.soundness import CELL_M
 
 _MARGIN = 2
 _ROUNDING = 1e-6

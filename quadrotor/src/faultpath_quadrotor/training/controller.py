@@ -18,7 +18,7 @@ from scipy.signal import lfilter
 from torch import Tensor
 
 from faultpath_quadrotor import so3
-from faultpath_quadrotor.plant.vehicle_batch import Vehicle
+from faultpath_quadrotor.plant.protocol import Vehicle
 from faultpath_quadrotor.platform import ControllerSettings, PerturbationSettings
 from faultpath_quadrotor.state import Batched, State
 from faultpath_quadrotor.vehicle import (

@@ -30,7 +30,7 @@ from faultpath.plugin.training import (
     save,
     weights_sha256,
 )
-from faultpath_quadrotor.checkpoint import ModelCard
+from faultpath_quadrotor.models import ModelCard
 
 _SAME_LOSS = 1e-3
 """Relative difference of a first loss that machines may cause and a change of code does not."""

@@ -1,22 +1,25 @@
-"""Training episodes: the draws for each, and the flight of a batch."""
+"""Training episodes: the draws for each, the flight of a batch, and the pools that they make."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
 
 import numpy as np
 import torch
 from torch import Tensor
 
-from faultpath.plugin.system import generator
+from faultpath.plugin.system import UserError, generator
 from faultpath_quadrotor import native, so3
 from faultpath_quadrotor.plant import TorchPlant
-from faultpath_quadrotor.plant.vehicle_batch import Vehicle
+from faultpath_quadrotor.plant.protocol import Vehicle
 from faultpath_quadrotor.platform import PLATFORM, FlightSettings
 from faultpath_quadrotor.state import State, padded_lanes
 from faultpath_quadrotor.training import controller as perturbation
 from faultpath_quadrotor.training.controller import Course, WaypointController
+from faultpath_quadrotor.training.pool import PoolPart, PoolRecipe, Progress, code_of, make_pool
 from faultpath_quadrotor.training.recorded import Flights, blank_values, record
 from faultpath_quadrotor.vehicle import (
     CONTROL_RATE_HZ,
@@ -134,3 +137,48 @@ def _in_bounds(state: State, settings: FlightSettings) -> Tensor:
     slow = (state.velocity * state.velocity).sum(0) < settings.speed_limit_mps**2
     upright = state.rotation[2, 2] > np.cos(np.radians(settings.tilt_limit_deg))
     return inside & slow & upright
+
+
+EPISODES = {"nominal": 7_150, "wind": 14_891}  # paper, Section IV-A
+BATCH = 1024
+"""Episodes flown together. The plant's cost a vehicle still falls beyond this; a larger batch would
+need more memory for its winds, and a kill would lose more."""
+
+
+def collect(
+    folder: Path,
+    pools: Sequence[str] = ("nominal", "wind"),
+    workers: int = 2,
+    episodes: Mapping[str, int] | None = None,
+    seed: int = 0,
+    progress: Progress | None = None,
+) -> dict[str, Path]:
+    """Collect `pools` into `folder` and return the file of each pool.
+
+    A finished pool is kept, an unfinished one is completed. `episodes` gives the number of episodes
+    of a pool where it is not the paper's; `workers` is the number of processes, 0 for this one.
+    `progress` is called with the episodes done and the total of a pool. Raises `UserError` for a
+    pool that does not exist, for one that was collected by another recipe, and when `folder` cannot
+    be written.
+    """
+    recipes = {pool: recipe(pool, (episodes or {}).get(pool), seed) for pool in pools}
+    paths: dict[str, Path] = {}
+    for pool, pool_recipe in recipes.items():
+        every = range(pool_recipe.episodes)
+        batches = [every[first : first + BATCH] for first in every[::BATCH]]
+        parts = [
+            PoolPart(f"{batch.start:06d}+{len(batch)}", len(batch), partial(fly, pool, batch, seed))
+            for batch in batches
+        ]
+        paths[pool] = make_pool(folder, pool_recipe, parts, workers, progress)
+    return paths
+
+
+def recipe(pool: str, episodes: int | None = None, seed: int = 0) -> PoolRecipe:
+    """Return what decides a pool's numbers; `UserError` for a pool that cannot be."""
+    if pool not in EPISODES:
+        raise UserError(f"there is no pool '{pool}': choose from {', '.join(EPISODES)}.")
+    count = EPISODES[pool] if episodes is None else episodes
+    if count < 1:
+        raise UserError(f"pool '{pool}' cannot have {count} episodes: ask for at least one.")
+    return PoolRecipe(pool=pool, episodes=count, seed=seed, code_sha256=code_of())

@@ -16,12 +16,12 @@ from faultpath.plugin.data import locked, make_folder, sweep, write_file
 from faultpath.plugin.system import Stopped, UserError
 from faultpath.plugin.training import FitProgress, read_card
 from faultpath.plugin.work import Lost, Returned, local, run_each, send_message
-from faultpath_quadrotor import checkpoint, native
-from faultpath_quadrotor.checkpoint import ModelCard, checkpoint_path
-from faultpath_quadrotor.training import clearance_data, trajectories
+from faultpath_quadrotor import models, native
+from faultpath_quadrotor.models import ModelCard, checkpoint_path
+from faultpath_quadrotor.training import clearance_task, trajectories
 from faultpath_quadrotor.training.catalogue import CLEARANCE_POOL, TRAJECTORY_POOL, FitJob
-from faultpath_quadrotor.training.collection import collect, recipe
 from faultpath_quadrotor.training.fitting import fit
+from faultpath_quadrotor.training.flight import collect, recipe
 from faultpath_quadrotor.training.pool import is_there, pool_path
 
 
@@ -30,7 +30,7 @@ def missing_pools(jobs: Sequence[FitJob], data: Path) -> tuple[str, ...]:
 
     Raises `UserError` where a pool was made by other code, or otherwise.
     """
-    recipes = {CLEARANCE_POOL: clearance_data.recipe, TRAJECTORY_POOL: trajectories.recipe}
+    recipes = {CLEARANCE_POOL: clearance_task.recipe, TRAJECTORY_POOL: trajectories.recipe}
     missing: list[str] = []
     for pool in dict.fromkeys(pool for job in jobs for pool in job.entry.pools):
         path = pool_path(data, pool)
@@ -61,7 +61,7 @@ def collect_missing(
     for pool in pools:
         report = partial(progress, pool)
         if pool == CLEARANCE_POOL:
-            clearance_data.collect(data, workers=workers, progress=report)
+            clearance_task.collect(data, workers=workers, progress=report)
         elif pool == TRAJECTORY_POOL:
             trajectories.record(data, workers, report)
         else:
@@ -168,7 +168,7 @@ def fit_job(job: FitJob, data: Path, out: Path) -> Path:
 
 def ship(path: Path) -> None:
     """Copy a checkpoint and its card into the package; `UserError` when that is not writable."""
-    package = checkpoint.shipped_folder()
+    package = models.shipped_folder()
     make_folder(package)
     for file in (path, path.with_suffix(".json")):
         write_file(package / file.name, file.read_bytes())

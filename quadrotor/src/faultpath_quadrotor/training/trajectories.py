@@ -19,13 +19,18 @@ from faultpath.plugin.recording import taps_of
 from faultpath.plugin.system import SystemSpec, Treatment, load_system
 from faultpath_quadrotor import native
 from faultpath_quadrotor.device import CPU
-from faultpath_quadrotor.plant.module import ACTION, Flying
-from faultpath_quadrotor.plant.world import CONTROL_STEPS
+from faultpath_quadrotor.plant.module import ACTION, CONTROL_STEPS, Flying
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.training import recorded
-from faultpath_quadrotor.training.parts import TRAJECTORY_POOL, Progress
-from faultpath_quadrotor.training.pool import PoolPart, PoolRecipe, code_of, make_pool
+from faultpath_quadrotor.training.catalogue import TRAJECTORY_POOL
+from faultpath_quadrotor.training.pool import (
+    PoolPart,
+    PoolRecipe,
+    Progress,
+    code_of,
+    make_pool,
+)
 from faultpath_quadrotor.training.recorded import Flights, blank_values
 from faultpath_quadrotor.vehicle import CONTROL_RATE_HZ
 

@@ -12,8 +12,8 @@ from torch import Tensor
 
 from faultpath.plugin.training import validates
 from faultpath_quadrotor.predictors import Physics, Predictor
-from faultpath_quadrotor.predictors.history import STEPS
-from faultpath_quadrotor.predictors.predictor_inputs import Take, history, predictor_inputs
+from faultpath_quadrotor.predictors.base import Take, history, predictor_inputs
+from faultpath_quadrotor.predictors.module import STEPS
 from faultpath_quadrotor.predictors.rollout import unroll
 from faultpath_quadrotor.state import State
 from faultpath_quadrotor.training.recorded import COMPONENTS, SIGNALS, FlightData

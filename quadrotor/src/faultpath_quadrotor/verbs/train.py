@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
 
     from faultpath.plugin.results import SafeConsole, Table
-    from faultpath_quadrotor.checkpoint import ModelCard
+    from faultpath_quadrotor.models import ModelCard
     from faultpath_quadrotor.training.catalogue import FitJob
 
 EXAMPLE = "quadrotor gru gru+dcc --seed 0"
