@@ -1,6 +1,7 @@
 """Terminal output for a result, an interface and a trace."""
 
 from collections.abc import Iterable
+from typing import Any
 
 from rich.console import Group, RenderableType
 from rich.padding import Padding
@@ -23,7 +24,7 @@ from faultpath.report.sentences.phrases import (
 from faultpath.report.sentences.words import words
 from faultpath.report.tables import Line, Table, line
 from faultpath.report.tables.terminal import Parted, drawn
-from faultpath.run.check.tracing import TracedRead, TraceReport
+from faultpath.run.check.results import Trace, TracedRead
 
 _EFFECTS = (*DIFFERENCE, "holm", "scenes", "void", "break-even")
 
@@ -115,7 +116,7 @@ def interface_table(interface: Interface) -> RenderableType:
     return Group(drawn(table), *reconstructions)
 
 
-def trace_table(trace: TraceReport) -> Table:
+def trace_table(trace: Trace[Any]) -> Table:
     """Return a line for each reader of a channel, in the order in which they read."""
     taps: dict[tuple[str, str], list[TracedRead]] = {}
     for read in trace.reads:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 
@@ -27,6 +27,7 @@ from faultpath.run import Treatment
 from faultpath.run.attempt import Done, Raised, attempt
 from faultpath.run.check.reads import Enough, Read, ReadLog
 from faultpath.run.check.recording import Recording, signals
+from faultpath.run.check.results import Delivery
 from faultpath.run.execution.dispatch import Built, UndeclaredFile, dispatch
 from faultpath.run.pairing import unlike
 from faultpath.run.store.signals import DRAWN, Signal
@@ -44,8 +45,6 @@ MISTAKES: dict[str, tuple[type[Exception], ...]] = {
 }
 """Errors by the check that reports them; any other error keeps trials from their end."""
 TRIALS = "trials end"
-Delivery: TypeAlias = tuple[str, int, str, str]
-"""Scene, control step, channel and reader."""
 
 
 @dataclass(frozen=True)

@@ -1,38 +1,17 @@
-"""The runs of a check, and the form of its results."""
+"""The runs of a check."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Literal
 
-from faultpath.core.results import Result
 from faultpath.run.attempt import Done
 from faultpath.run.check.blocks import RecordedBlock
+from faultpath.run.check.results import Difference
 from faultpath.run.execution.recheck import deviation
 from faultpath.system.declared import Variant
 from faultpath.system.system import System
 
-UNDER = "under the fault"
+UNDER = "under the fault: "
 """Begins why a variant was run under the user's fault; its condition follows."""
-
-
-class Check(Result):
-    """One thing that was looked at."""
-
-    name: str
-    says: str
-    """One line on what was seen, or on why nothing could be."""
-    failures: tuple[str, ...] = ()
-    """A sentence each: what is wrong, where, and what to do."""
-    remarks: tuple[str, ...] = ()
-    """Sentences on what may be a mistake and may be none."""
-    judged: bool = True
-
-    @property
-    def status(self) -> Literal["passed", "failed", "not judged"]:
-        """Result of the check in a word."""
-        if self.failures:
-            return "failed"
-        return "passed" if self.judged else "not judged"
 
 
 @dataclass
@@ -61,29 +40,33 @@ class Seen:
             if run.outcomes:
                 yield variant.name, run
 
-    def under(self) -> Iterator[tuple[str, RecordedBlock]]:
-        """Yield the runs under the user's fault, each with its variant and condition in words."""
+    def under(self) -> Iterator[tuple[str, str, RecordedBlock]]:
+        """Yield the runs under the user's fault, each with its variant and condition."""
         for (variant, why, _), run in self.runs.items():
             if why.startswith(UNDER):
-                yield f"Variant '{variant}', {why}", run
+                yield variant, condition_of(why), run
 
     def unsteady(self) -> list[str]:
         """Return the variants of which a second run differs from the first."""
-        return [variant for variant, _ in self.firsts() if self.differs(variant, "again")]
+        return [variant for variant, _ in self.firsts() if self.difference(variant, "again")]
 
-    def differs(self, variant: str, why: str, base: str = "first") -> str:
-        """Say how a run of a variant differs from its first one; empty where it does not."""
+    def difference(self, variant: str, why: str, base: str = "first") -> Difference | None:
+        """Return how a run of a variant differs from its first one; `None` where it does not."""
         first, again = self.of(variant, base), self.of(variant, why)
         if error := again.error or first.error:
-            return f"fails where the first did not ({error})"
+            return Difference(error=error)
         if not again.outcomes:
-            return ""
+            return None
         odd = [key for key, digest in again.clean.items() if first.clean.get(key) != digest]
         by_scene = {outcome.scene: outcome for outcome in first.outcomes}
         before = [by_scene[outcome.scene] for outcome in again.outcomes]
-        words = str(deviation(before, Done(again.outcomes, ())) or "")
-        if odd:
-            scene, step, channel, reader = min(odd, key=lambda key: key[1])
-            words = words or "differs in its readings alone"
-            words += f", first at step {step} in {channel} -> {reader}, scene {scene!r}"
-        return words
+        outcomes = deviation(before, Done(again.outcomes, ()))
+        if outcomes is None and not odd:
+            return None
+        reading = min(odd, key=lambda key: key[1], default=None)
+        return Difference(outcomes=outcomes, reading=reading)
+
+
+def condition_of(why: str) -> str:
+    """Return the condition of the user's fault under which a variant was run; empty without it."""
+    return why.removeprefix(UNDER) if why.startswith(UNDER) else ""
