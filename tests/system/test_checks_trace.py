@@ -13,8 +13,7 @@ from faultpath.interface import Provenance
 from faultpath.report.sentences.checks import trace_finding
 from faultpath.report.terminal import trace_table
 from faultpath.run import SystemSpec, load_system
-from faultpath.run.check.results import PermittedRead
-from faultpath.run.check.tracing import trace_system
+from faultpath.run.check.tracing import PermittedRead, trace_system
 from faultpath.run.question import TraceQuestion
 
 DOCK = f"{ROOT / 'examples/dock.py'}:create"

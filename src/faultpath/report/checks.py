@@ -10,7 +10,9 @@ from faultpath.core.results import Result
 from faultpath.core.text import counted
 from faultpath.report.sentences import checks as words
 from faultpath.report.tables.terminal import STYLES
-from faultpath.run.check.results import Checked, SystemCheck, Trace, TraceFinding
+from faultpath.run.check.check import SystemCheck
+from faultpath.run.check.results import Checked
+from faultpath.run.check.tracing import Trace, TraceFinding
 
 _STYLES = {"passed": STYLES["good"], "failed": STYLES["bad"], "not judged": STYLES["faint"]}
 

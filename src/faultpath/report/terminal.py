@@ -24,7 +24,7 @@ from faultpath.report.sentences.phrases import (
 from faultpath.report.sentences.words import words
 from faultpath.report.tables import Line, Table, line
 from faultpath.report.tables.terminal import Parted, drawn
-from faultpath.run.check.results import Trace, TracedRead
+from faultpath.run.check.tracing import Trace, TracedRead
 
 _EFFECTS = (*DIFFERENCE, "holm", "scenes", "void", "break-even")
 

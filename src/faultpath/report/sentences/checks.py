@@ -9,22 +9,18 @@ from faultpath.run.check.results import (
     Compared,
     Difference,
     Diverged,
-    EndedEarly,
     Ends,
     Faulted,
     FilesOpened,
-    NeverRead,
     NoEffect,
     NoneEnded,
     NoRoom,
     NotFinite,
     NothingAltered,
     NothingChanged,
-    NothingDelivered,
     NotReached,
     OrderMatters,
     OtherMagnitude,
-    PermittedRead,
     Problem,
     ReadElsewhere,
     Reads,
@@ -33,12 +29,17 @@ from faultpath.run.check.results import (
     Spans,
     Stopped,
     TapFault,
-    TraceFinding,
-    TruthRead,
     TwoNames,
     Unjudged,
     Unsteady,
     WholeNumbers,
+)
+from faultpath.run.check.tracing import (
+    EndedEarly,
+    NeverRead,
+    PermittedRead,
+    TraceFinding,
+    TruthRead,
 )
 from faultpath.run.findings import Unpaired, Unproven, Unread
 
@@ -186,7 +187,7 @@ def problem(found: Problem) -> str:
                 f"Source '{found.source}' gives readings of up to {found.largest:.3g}: look for a "
                 "loop that is unstable without any fault."
             )
-        case _:
+        case TapFault():
             (channel, reader), trials = found.tap, found.trials
             point = f"Injection point {channel} -> {reader} of variant '{found.variant}'"
             return f"{point}, faulted in {trials} trials, {_tap_fault(found)}"
@@ -249,8 +250,8 @@ def _tap_fault(found: TapFault) -> str:
                 "trust no result of this version of faultpath, and report it."
             )
         case NotReached():
-            return f"is not reached: {found.error}."
-        case NothingDelivered():
+            if found.error:
+                return f"is not reached: {found.error}."
             return (
                 "delivered nothing, though it did without the fault; deliver at every step that "
                 "reads, and keep nothing from one call of run() to the next."
@@ -265,11 +266,11 @@ def _tap_fault(found: TapFault) -> str:
                 f"in scene {found.scene!r} where all that it was handed was the same: it takes a "
                 "value from elsewhere, past its injection points. Let it use what it is handed."
             )
-        case NoEffect(outputs=outputs) if outputs:
+        case NoEffect() if found.outputs:
             return (
                 f"had no effect because the output of '{module}' never changed in any trial: "
-                f"{listed(outputs)} stayed what it is without the fault. Look whether it uses this "
-                "reading, and choose scenes in which that matters."
+                f"{listed(found.outputs)} stayed what it is without the fault. Look whether it "
+                "uses this reading, and choose scenes in which that matters."
             )
         case _:
             return (

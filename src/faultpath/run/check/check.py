@@ -4,8 +4,10 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from hashlib import sha256
 from itertools import pairwise
+from typing import Generic, Literal, TypeVar
 
 from faultpath.core.errors import UserError
+from faultpath.core.results import Result
 from faultpath.core.text import unknown
 from faultpath.faults import AnyIntervention, Erase, Fault, Offset, Scale, resolve
 from faultpath.faults import Sequence as InTurn
@@ -14,7 +16,7 @@ from faultpath.run.check.blocks import BlockSpec, RecordedBlock, coarsest, run_b
 from faultpath.run.check.delivery import HELD, MOVED, reader_at, unanswered
 from faultpath.run.check.judging import judged
 from faultpath.run.check.reads import Read
-from faultpath.run.check.results import Checked, SystemCheck
+from faultpath.run.check.results import Checked
 from faultpath.run.check.seen import UNDER, Seen
 from faultpath.run.execution.dispatch import Built
 from faultpath.run.question import CheckQuestion
@@ -28,6 +30,24 @@ MOST = 4
 first two, or one for each part of the user's own: a system lists those that run with them first."""
 _AFTER = 20
 """Control steps for which a tap is faulted."""
+
+_Told = TypeVar("_Told")
+
+
+class SystemCheck(Result, Generic[_Told]):
+    """A check of a system, whose parts are data or words."""
+
+    format: Literal[2] = 2
+    system: str
+    options: dict[str, str]
+    variants: tuple[str, ...]
+    library: str
+    scenes: tuple[str, ...]
+    of: int
+    """Number of scenes of the library."""
+    seed: int
+    fault: str | None = None
+    checks: tuple[_Told, ...]
 
 
 def run_checks(

@@ -15,7 +15,6 @@ from faultpath.run.check.results import (
     NoEffect,
     NothingAltered,
     NothingChanged,
-    NothingDelivered,
     NotReached,
     Problem,
     ReadElsewhere,
@@ -73,10 +72,8 @@ def delivery(name: str, seen: Seen) -> Checked:
         failures += [
             AlteredElsewhere(*fault, other) for other in dict.fromkeys(read.tap for read in others)
         ]
-        if run.fails == name:
-            failures.append(NotReached(*fault, run.error))
-        elif not here:
-            failures.append(NothingDelivered(*fault))
+        if run.fails == name or not here:
+            failures.append(NotReached(*fault, run.error if run.fails == name else ""))
         elif not count:
             failures.append(NothingAltered(*fault))
         elif (variant, tap) in silent:

@@ -1,15 +1,13 @@
-"""Results of a check or a trace as data, each kind with its numbers.
+"""Results of a check as data, each kind with its numbers.
 
 `faultpath.report.sentences.checks` says them.
 """
 
 from dataclasses import dataclass
-from typing import Generic, Literal, TypeAlias, TypeVar
+from typing import Literal, TypeAlias
 
-from faultpath.core.results import Result
 from faultpath.run.findings import Deviation, Unpaired, Unproven, Unread
 
-_Told = TypeVar("_Told")
 Tap: TypeAlias = tuple[str, str]
 """Channel and reader."""
 Delivery: TypeAlias = tuple[str, int, str, str]
@@ -107,14 +105,10 @@ class AlteredElsewhere(TapFault):
 
 @dataclass(frozen=True)
 class NotReached(TapFault):
-    """An error says that it was not delivered."""
+    """Nothing was delivered there, though it was without the fault."""
 
     error: str
-
-
-@dataclass(frozen=True)
-class NothingDelivered(TapFault):
-    """The tap delivered nothing, though it did without the fault."""
+    """What says so; empty where nothing did."""
 
 
 @dataclass(frozen=True)
@@ -194,12 +188,7 @@ Problem: TypeAlias = (
     | Unsteady
     | OrderMatters
     | TwoNames
-    | AlteredElsewhere
-    | NotReached
-    | NothingDelivered
-    | NothingAltered
-    | ReadElsewhere
-    | NoEffect
+    | TapFault
     | NothingChanged
     | NotFinite
     | WholeNumbers
@@ -302,92 +291,3 @@ class Checked:
     remarks: tuple[Problem, ...] = ()
     """What may be a mistake and may be none."""
     judged: bool = True
-
-
-class SystemCheck(Result, Generic[_Told]):
-    """A check of a system, whose parts are data or words."""
-
-    format: Literal[2] = 2
-    system: str
-    options: dict[str, str]
-    variants: tuple[str, ...]
-    library: str
-    scenes: tuple[str, ...]
-    of: int
-    """Number of scenes of the library."""
-    seed: int
-    fault: str | None = None
-    checks: tuple[_Told, ...]
-
-
-class TracedRead(Result):
-    """A delivery of one channel to one reader in one control step."""
-
-    step: int
-    reader: str
-    channel: str
-    source: str
-    valid_step: int
-    """Step of the reading, as that of `Read`."""
-    asks: int = 0
-    """Answers that the reader got of a query."""
-    altered_by: tuple[str, ...] = ()
-    """Faults at the tap, where what was delivered differs from the reading."""
-
-
-@dataclass(frozen=True)
-class NeverRead:
-    """A reader that a variant declares, and that did not read in the steps of a trace."""
-
-    variant: str
-    channel: str
-    reader: str
-    steps: int
-
-
-@dataclass(frozen=True)
-class EndedEarly:
-    """An error that ended a run before the steps of its trace."""
-
-    error: str
-
-
-@dataclass(frozen=True)
-class PermittedRead:
-    """A read of a privileged source, by permission of the variant."""
-
-    reader: str
-    source: str
-
-
-@dataclass(frozen=True)
-class TruthRead:
-    """A module that takes a truth of the plant past all taps."""
-
-    module: str
-    truth: str
-
-
-TraceFinding: TypeAlias = NeverRead | EndedEarly | PermittedRead | TruthRead
-
-
-class Trace(Result, Generic[_Told]):
-    """A trace of a variant, whose findings are data or words."""
-
-    format: Literal[1] = 1
-    system: str
-    options: dict[str, str]
-    variant: str
-    library: str
-    scene: str
-    seed: int
-    steps: int
-    fault: str = ""
-    reads: tuple[TracedRead, ...]
-    """In the order in which they happened."""
-    reconstructed: dict[str, tuple[str, tuple[str, ...]]]
-    """Source to the module that reconstructs it and the channels that this one read."""
-    privileged: tuple[_Told, ...] = ()
-    """Reads of what deployment does not have, by permission of the variant or past all taps."""
-    findings: tuple[_Told, ...] = ()
-    """Differences from what is declared."""

@@ -1,8 +1,11 @@
 """Trace of who read what, when, in the first steps of a run, and where that is not as declared."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Generic, Literal, TypeAlias, TypeVar
 
 from faultpath.core.errors import UserError
+from faultpath.core.results import Result
 from faultpath.core.text import unknown
 from faultpath.faults import describe, reaching
 from faultpath.interface import module_of
@@ -10,19 +13,85 @@ from faultpath.run import SystemSpec, Treatment
 from faultpath.run.check.blocks import BlockSpec, run_block
 from faultpath.run.check.check import chosen_variants
 from faultpath.run.check.reads import Read
-from faultpath.run.check.results import (
-    EndedEarly,
-    NeverRead,
-    PermittedRead,
-    Trace,
-    TracedRead,
-    TraceFinding,
-    TruthRead,
-)
 from faultpath.run.question import TraceQuestion
 from faultpath.system.checks import library_of
 from faultpath.system.loop_system import LoopSystem
 from faultpath.system.system import System
+
+_Told = TypeVar("_Told")
+
+
+class TracedRead(Result):
+    """A delivery of one channel to one reader in one control step."""
+
+    step: int
+    reader: str
+    channel: str
+    source: str
+    valid_step: int
+    """Step of the reading, as that of `Read`."""
+    asks: int = 0
+    """Answers that the reader got of a query."""
+    altered_by: tuple[str, ...] = ()
+    """Faults at the tap, where what was delivered differs from the reading."""
+
+
+@dataclass(frozen=True)
+class NeverRead:
+    """A reader that a variant declares, and that did not read in the steps of a trace."""
+
+    variant: str
+    channel: str
+    reader: str
+    steps: int
+
+
+@dataclass(frozen=True)
+class EndedEarly:
+    """An error that ended a run before the steps of its trace."""
+
+    error: str
+
+
+@dataclass(frozen=True)
+class PermittedRead:
+    """A read of a privileged source, by permission of the variant."""
+
+    reader: str
+    source: str
+
+
+@dataclass(frozen=True)
+class TruthRead:
+    """A module that takes a truth of the plant past all taps."""
+
+    module: str
+    truth: str
+
+
+TraceFinding: TypeAlias = NeverRead | EndedEarly | PermittedRead | TruthRead
+
+
+class Trace(Result, Generic[_Told]):
+    """A trace of a variant, whose findings are data or words."""
+
+    format: Literal[1] = 1
+    system: str
+    options: dict[str, str]
+    variant: str
+    library: str
+    scene: str
+    seed: int
+    steps: int
+    fault: str = ""
+    reads: tuple[TracedRead, ...]
+    """In the order in which they happened."""
+    reconstructed: dict[str, tuple[str, tuple[str, ...]]]
+    """Source to the module that reconstructs it and the channels that this one read."""
+    privileged: tuple[_Told, ...] = ()
+    """Reads of what deployment does not have, by permission of the variant or past all taps."""
+    findings: tuple[_Told, ...] = ()
+    """Differences from what is declared."""
 
 
 def trace_system(system: System, spec: SystemSpec, question: TraceQuestion) -> Trace[TraceFinding]:
