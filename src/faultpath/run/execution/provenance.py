@@ -6,11 +6,11 @@ from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
+from faultpath.core import __version__
 from faultpath.core.files.atomic import write_text
 from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.plain import model_of
 from faultpath.core.trees import packages, release
-from faultpath.core.version import __version__
 from faultpath.run.execution.runner import RunResult
 from faultpath.run.provenance import RunCode, RunMachine, RunProvenance
 from faultpath.run.store.folder import seal

@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from faultpath.core.errors import UserError
-from faultpath.core.numbers import number_of
-from faultpath.core.text import unknown
+from faultpath.core.text import number_of, unknown
 from faultpath.run.received.question import JudgeQuestion
 from faultpath.system.declared import check_name, shown
 from faultpath.system.outcome import Status
