@@ -58,7 +58,7 @@ def report_of(result: SystemCheck[Checked]) -> Report:
             says=words.summary(check),
             failures=tuple(map(words.problem, check.failures)),
             remarks=tuple(map(words.problem, check.remarks)),
-            judged=check.judged,
+            judged=not check.unjudged,
         )
         for check in result.checks
     )

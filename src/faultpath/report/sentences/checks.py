@@ -4,33 +4,25 @@ from faultpath.core.text import capital, listed
 from faultpath.interface import module_of
 from faultpath.report.sentences.findings import describe
 from faultpath.run.check.results import (
-    AlteredElsewhere,
     Checked,
     Compared,
     Difference,
     Diverged,
     Ends,
     Faulted,
-    FilesOpened,
-    NoEffect,
     NoneEnded,
     NoRoom,
     NotFinite,
-    NothingAltered,
     NothingChanged,
-    NotReached,
     OrderMatters,
     OtherMagnitude,
     Problem,
-    ReadElsewhere,
     Reads,
-    Reordered,
     Repeated,
     Spans,
     Stopped,
     TapFault,
     TwoNames,
-    Unjudged,
     Unsteady,
     WholeNumbers,
 )
@@ -46,6 +38,7 @@ from faultpath.run.findings import Unpaired, Unproven, Unread
 _UNJUDGED = {
     "none ended": "no variant ran to its end",
     "one scene": "one scene has no others beside it",
+    "last digit": "a last digit decides how scenes end",
     "order of unsteady": "results do not repeat in any order",
     "pairs of unsteady": "results do not repeat, so no two are a pair",
 }
@@ -87,9 +80,9 @@ _CAUSES = {
 
 def summary(check: Checked) -> str:
     """Return the line of a check: what was seen, or why nothing could be."""
+    if check.unjudged and not check.failures:
+        return _UNJUDGED[check.unjudged]
     match check.summary:
-        case Unjudged(why):
-            return _UNJUDGED[why]
         case NoneEnded(see):
             return f"none did; see {_checks(see)}" if see else "none did"
         case Ends(successes, under_fault):
@@ -100,12 +93,6 @@ def summary(check: Checked) -> str:
         case Repeated(processes):
             where = "in two processes and twice in one" if processes else "twice in one process"
             return f"run {where}, {'other' if check.failures else 'the same'} bits"
-        case Reordered():
-            if not (check.judged or check.failures):
-                return "a last digit decides how scenes end"
-            bits = "the same to rounding" if check.remarks else "the same bits"
-            bits = "other bits" if check.failures else bits
-            return f"in another order and without some others, {bits}"
         case Compared(runs):
             same = "the same initial states, disturbances and planner noise "
             return f"{'' if check.failures else same}in {runs} runs of a scene"
@@ -119,8 +106,12 @@ def summary(check: Checked) -> str:
                 f"{name} {low:.3g} to {high:.3g} {unit}".removesuffix(" 1")
                 for name, low, high, unit in sources
             )
-        case FilesOpened():
+        case None if check.name == "data files":
             return "Python opened only declared files"
+        case None:
+            bits = "the same to rounding" if check.remarks else "the same bits"
+            bits = "other bits" if check.failures else bits
+            return f"in another order and without some others, {bits}"
 
 
 def problem(found: Problem) -> str:
@@ -242,37 +233,38 @@ def _order(found: OrderMatters) -> str:
 
 def _tap_fault(found: TapFault) -> str:
     module = module_of(found.tap[1])
-    match found:
-        case AlteredElsewhere():
+    match found.wrong:
+        case "alters another tap":
             channel, reader = found.other
             return (
                 f"altered a reading at {channel} -> {reader} too, which the fault does not name; "
                 "trust no result of this version of faultpath, and report it."
             )
-        case NotReached():
+        case "not delivered":
             if found.error:
                 return f"is not reached: {found.error}."
             return (
                 "delivered nothing, though it did without the fault; deliver at every step that "
                 "reads, and keep nothing from one call of run() to the next."
             )
-        case NothingAltered():
+        case "alters nothing":
             return (
                 "altered none of its readings; let the source hold numbers that a fault can change."
             )
-        case ReadElsewhere():
+        case "reads elsewhere":
             return (
-                f"had no effect, and '{module}' wrote another {found.source} at step {found.step} "
-                f"in scene {found.scene!r} where all that it was handed was the same: it takes a "
-                "value from elsewhere, past its injection points. Let it use what it is handed."
+                f"had no effect, and '{module}' wrote another {found.outputs[0]} at step "
+                f"{found.step} in scene {found.scene!r} where all that it was handed was the same: "
+                "it takes a value from elsewhere, past its injection points. Let it use what it is "
+                "handed."
             )
-        case NoEffect() if found.outputs:
+        case "no effect" if found.outputs:
             return (
                 f"had no effect because the output of '{module}' never changed in any trial: "
                 f"{listed(found.outputs)} stayed what it is without the fault. Look whether it "
                 "uses this reading, and choose scenes in which that matters."
             )
-        case _:
+        case "no effect":
             return (
                 "changed nothing else, in no outcome and at no other injection point, in the steps "
                 "that were looked at; its module may use it later, or not at all, or may use "

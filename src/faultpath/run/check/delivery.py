@@ -8,18 +8,7 @@ from faultpath.interface import module_of
 from faultpath.loop import Plant
 from faultpath.run.attempt import Done
 from faultpath.run.check.blocks import RecordedBlock
-from faultpath.run.check.results import (
-    AlteredElsewhere,
-    Checked,
-    Faulted,
-    NoEffect,
-    NothingAltered,
-    NothingChanged,
-    NotReached,
-    Problem,
-    ReadElsewhere,
-    Tap,
-)
+from faultpath.run.check.results import Checked, Faulted, NothingChanged, Problem, Tap, TapFault
 from faultpath.run.check.seen import Seen
 from faultpath.run.execution.recheck import deviation
 from faultpath.system.loop_system import LoopSystem
@@ -70,15 +59,18 @@ def delivery(name: str, seen: Seen) -> Checked:
         others = [read for read in run.reads if read.tap != tap and read.altered]
         elsewhere += sum(read.altered for read in others)
         failures += [
-            AlteredElsewhere(*fault, other) for other in dict.fromkeys(read.tap for read in others)
+            TapFault(*fault, "alters another tap", other=other)
+            for other in dict.fromkeys(read.tap for read in others)
         ]
-        if run.fails == name or not here:
-            failures.append(NotReached(*fault, run.error if run.fails == name else ""))
+        if run.fails == name:
+            failures.append(TapFault(*fault, "not delivered", run.error))
+        elif not here:
+            failures.append(TapFault(*fault, "not delivered"))
         elif not count:
-            failures.append(NothingAltered(*fault))
+            failures.append(TapFault(*fault, "alters nothing"))
         elif (variant, tap) in silent:
             problem = _without_effect(seen, variant, tap)
-            (failures if isinstance(problem, ReadElsewhere) else remarks).append(problem)
+            (failures if problem.wrong == "reads elsewhere" else remarks).append(problem)
     remarks += [
         NothingChanged(variant, condition)
         for variant, condition, run in seen.under()
@@ -88,7 +80,7 @@ def delivery(name: str, seen: Seen) -> Checked:
     return Checked(name, summary, tuple(failures), tuple(remarks))
 
 
-def _without_effect(seen: Seen, variant: str, tap: Tap) -> ReadElsewhere | NoEffect:
+def _without_effect(seen: Seen, variant: str, tap: Tap) -> TapFault:
     """Return why a fault at a tap had no effect: its reader has its values from elsewhere where it
     was handed the same in two runs and wrote something else."""
     fault = variant, tap, len(seen.scenes)
@@ -97,14 +89,15 @@ def _without_effect(seen: Seen, variant: str, tap: Tap) -> ReadElsewhere | NoEff
     sources = {read.tap: read.source for read in reads}
     outputs = writes.intersection(sources.values())
     if not outputs:
-        return NoEffect(*fault, ())
+        return TapFault(*fault, "no effect")
     runs = [seen.of(variant, why, min(taps)) for why in (HELD, MOVED)]
     queried = {read.source for read in reads if read.asks}  # an answer depends on the request too
     handed = {scene: step for step, scene, at in _unlike(runs, "got")[::-1] if at in taps}
     for step, scene, at in _unlike(runs, "clean"):
         if sources[at] in outputs - queried and step < handed.get(scene, math.inf):
-            return ReadElsewhere(*fault, sources[at], step, scene)
-    return NoEffect(*fault, tuple(sorted(outputs)))
+            changed = (sources[at],)
+            return TapFault(*fault, "reads elsewhere", outputs=changed, step=step, scene=scene)
+    return TapFault(*fault, "no effect", outputs=tuple(sorted(outputs)))
 
 
 def _unlike(runs: Sequence[RecordedBlock], what: str) -> list[tuple[int, str, Tap]]:

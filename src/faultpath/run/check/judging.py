@@ -13,7 +13,6 @@ from faultpath.run.check.results import (
     Compared,
     Diverged,
     Ends,
-    FilesOpened,
     NoneEnded,
     NoRoom,
     NotFinite,
@@ -21,12 +20,10 @@ from faultpath.run.check.results import (
     OtherMagnitude,
     Problem,
     Reads,
-    Reordered,
     Repeated,
     Spans,
     Stopped,
     TwoNames,
-    Unjudged,
     Unsteady,
     WholeNumbers,
 )
@@ -57,7 +54,7 @@ def judged(seen: Seen) -> tuple[Checked, ...]:
         "declared reads": _reads,
         "fault delivery": delivery,
         "shape and unit": _readings,
-        "data files": lambda name, _: Checked(name, FilesOpened()),
+        "data files": lambda name, _: Checked(name),
     }
     outcomes = {name: run.outcomes for name, run in seen.firsts()}
     successes = tuple(
@@ -67,8 +64,7 @@ def judged(seen: Seen) -> tuple[Checked, ...]:
     ends = Ends(successes, sum(len(run.outcomes) for _, _, run in seen.under()))
     checks = [Checked(TRIALS, ends, remarks=without_room(outcomes))]
     for name, judge in judges.items():
-        none = Checked(name, Unjudged("none ended"), judged=False)
-        checks.append(judge(name, seen) if outcomes else none)
+        checks.append(judge(name, seen) if outcomes else Checked(name, unjudged="none ended"))
     for at, check in enumerate(checks):
         # Backwards: of several runs with the same error the first one names it.
         stopped = {
@@ -118,10 +114,10 @@ def _determinism(name: str, seen: Seen) -> Checked:
 def _independence(name: str, seen: Seen) -> Checked:
     """Check that a scene's result depends neither on the others nor on their order."""
     if seen.unsteady():
-        return Checked(name, Unjudged("order of unsteady"), judged=False)
+        return Checked(name, unjudged="order of unsteady")
     if len(seen.scenes) < 2:
-        return Checked(name, Unjudged("one scene"), judged=False)
-    failures, remarks, judged = list[Problem](), list[Problem](), True
+        return Checked(name, unjudged="one scene")
+    failures, remarks = list[OrderMatters](), list[OrderMatters]()
     for variant, first in seen.firsts():
         difference = seen.difference(variant, "part")
         if difference is None:
@@ -130,17 +126,22 @@ def _independence(name: str, seen: Seen) -> Checked:
         if gap > _SEVERAL * max(rounding, coarsest(first)):
             failures.append(OrderMatters(variant, difference, gap, "dependence"))
         elif math.isinf(gap):
-            judged = False
             remarks.append(OrderMatters(variant, difference, gap, "last digit"))
         else:
             remarks.append(OrderMatters(variant, difference, gap, "rounding"))
-    return Checked(name, Reordered(), tuple(failures), tuple(remarks), judged)
+    last_digit = any(remark.cause == "last digit" for remark in remarks)
+    return Checked(
+        name,
+        failures=tuple(failures),
+        remarks=tuple(remarks),
+        unjudged="last digit" if last_digit else "",
+    )
 
 
 def _pairing(name: str, seen: Seen) -> Checked:
     """Check that two treatments meet the same conditions in each scene."""
     if seen.unsteady():
-        return Checked(name, Unjudged("pairs of unsteady"), judged=False)
+        return Checked(name, unjudged="pairs of unsteady")
     firsts = list(seen.firsts())
     groups = [((variant, "correct inputs"), run) for variant, run in firsts]
     faulted = ((variant, seen.of(variant, "faulted")) for variant, _ in firsts)

@@ -94,43 +94,19 @@ class TapFault:
     variant: str
     tap: Tap
     trials: int
-
-
-@dataclass(frozen=True)
-class AlteredElsewhere(TapFault):
-    """It altered a reading at another tap too."""
-
-    other: Tap
-
-
-@dataclass(frozen=True)
-class NotReached(TapFault):
-    """Nothing was delivered there, though it was without the fault."""
-
-    error: str
-    """What says so; empty where nothing did."""
-
-
-@dataclass(frozen=True)
-class NothingAltered(TapFault):
-    """It altered no reading."""
-
-
-@dataclass(frozen=True)
-class ReadElsewhere(TapFault):
-    """Its module wrote another value where all that it was handed was the same."""
-
-    source: str
-    step: int
-    scene: str
-
-
-@dataclass(frozen=True)
-class NoEffect(TapFault):
-    """It changed nothing but the reading."""
-
-    outputs: tuple[str, ...]
-    """Sources that its module writes, which never changed; empty where it writes none."""
+    wrong: Literal[
+        "alters another tap", "not delivered", "alters nothing", "reads elsewhere", "no effect"
+    ]
+    """`reads elsewhere`: its module wrote another value where all that it was handed was the same;
+    `no effect`: it changed nothing but the reading."""
+    error: str = ""
+    """What says that it was not delivered; empty where nothing was delivered at all."""
+    other: Tap = ("", "")
+    outputs: tuple[str, ...] = ()
+    """Sources that its module writes: the one that changed, or all, of which none did; empty where
+    no module reads one."""
+    step: int = 0
+    scene: str = ""
 
 
 @dataclass(frozen=True)
@@ -202,13 +178,6 @@ Problem: TypeAlias = (
 
 
 @dataclass(frozen=True)
-class Unjudged:
-    """Nothing could be judged."""
-
-    why: Literal["none ended", "one scene", "order of unsteady", "pairs of unsteady"]
-
-
-@dataclass(frozen=True)
 class Ends:
     """Trials that came to their end."""
 
@@ -224,11 +193,6 @@ class Repeated:
 
     processes: bool
     """In processes of their own."""
-
-
-@dataclass(frozen=True)
-class Reordered:
-    """Scenes ran in another order, without some of the others."""
 
 
 @dataclass(frozen=True)
@@ -261,24 +225,10 @@ class Spans:
     sources: tuple[tuple[str, float, float, str], ...]
 
 
-@dataclass(frozen=True)
-class FilesOpened:
-    """Python opened files."""
-
-
-Summary: TypeAlias = (
-    Unjudged
-    | NoneEnded
-    | Ends
-    | Repeated
-    | Reordered
-    | Compared
-    | Reads
-    | Faulted
-    | Spans
-    | FilesOpened
-)
-"""What the line of a check tells."""
+Summary: TypeAlias = NoneEnded | Ends | Repeated | Compared | Reads | Faulted | Spans
+Unjudged: TypeAlias = Literal[
+    "", "none ended", "one scene", "last digit", "order of unsteady", "pairs of unsteady"
+]
 
 
 @dataclass(frozen=True)
@@ -286,8 +236,10 @@ class Checked:
     """One check of a system."""
 
     name: str
-    summary: Summary
+    summary: Summary | None = None
+    """What its line tells, where that is a number."""
     failures: tuple[Problem, ...] = ()
     remarks: tuple[Problem, ...] = ()
     """What may be a mistake and may be none."""
-    judged: bool = True
+    unjudged: Unjudged = ""
+    """Why nothing could be judged."""
