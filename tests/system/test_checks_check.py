@@ -12,7 +12,7 @@ from written import written
 
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.loop import Taps
-from faultpath.report.sentences.checks import problem, remedy
+from faultpath.report.sentences.checks import describe, remedy
 from faultpath.run.check.judging import ENOUGH, diverged, other_names, without_room
 from faultpath.run.check.results import Diverged, NoRoom, TwoNames
 from faultpath.system import ComposedSystem, Outcome, Status, writes
@@ -134,8 +134,8 @@ def test_a_baseline_that_always_ends_alike_leaves_an_audit_no_room():
     above, below = without_room({"bare": ends(ENOUGH), "guarded": ends(ENOUGH), "lost": crashes})
     assert above == NoRoom(("bare", "guarded"), succeed=True, scenes=20)
     assert below == NoRoom(("lost",), succeed=False, scenes=20)
-    assert problem(above).startswith("Variants 'bare', 'guarded' succeed in all of 20 checked sce")
-    assert problem(below).startswith("Variant 'lost' succeeds in none of 20 checked scenes")
+    assert describe(above).startswith("Variants 'bare', 'guarded' succeed in all of 20 checked sce")
+    assert describe(below).startswith("Variant 'lost' succeeds in none of 20 checked scenes")
     assert without_room({"bare": ends(ENOUGH - 1)}) == ()  # too few to say so
     for odd in (Status.CRASH, Status.FAILED):
         assert without_room({"bare": ends(ENOUGH, odd)}) == ()
@@ -144,7 +144,7 @@ def test_a_baseline_that_always_ends_alike_leaves_an_audit_no_room():
 def test_a_check_sees_what_diverged():
     assert diverged({"height": (-2.0, 3.0)}) == ()
     assert diverged({"height": (-2e259, 1)}) == (Diverged("height", 2e259),)
-    sentence = problem(Diverged("height", 2e259))
+    sentence = describe(Diverged("height", 2e259))
     assert sentence.startswith("Source 'height' gives readings of up to 2e+259: look")
 
 
@@ -180,7 +180,7 @@ def test_modules_that_stand_for_each_other_under_two_names_are_a_remark():
 
     (remark,) = other_names(cart("nominal"), ["old", "new"])
     assert remark == TwoNames(("observer", "old"), ("nominal", "new"), ("speed",), ("slope",))
-    assert problem(remark).startswith(
+    assert describe(remark).startswith(
         "Modules 'observer' of old and 'nominal' of new read speed and write"
     )
     assert other_names(cart("observer"), ["old", "new"]) == ()

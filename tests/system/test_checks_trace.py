@@ -10,7 +10,7 @@ from cli_runs import ROOT, TOY, faultpath
 from faultpath.core.errors import UserError
 from faultpath.faults import FaultText
 from faultpath.interface import Provenance
-from faultpath.report.sentences.checks import trace_finding
+from faultpath.report.sentences.checks import describe_read
 from faultpath.report.terminal import trace_table
 from faultpath.run import SystemSpec, load_system
 from faultpath.run.check.tracing import PermittedRead, trace_system
@@ -72,7 +72,7 @@ def test_what_is_not_as_declared_is_found(name, variant, broken, said):
         return
     _, found = trace(name, variant, broken=broken)
     assert len(found.findings) == 1
-    assert re.search(said, trace_finding(found.findings[0]))
+    assert re.search(said, describe_read(found.findings[0]))
 
 
 def test_a_privileged_read_without_permission_is_found():
@@ -89,7 +89,7 @@ def test_a_privileged_read_without_permission_is_found():
     readers = ("observer.model", "controller.inverse")
     assert permitted.privileged == tuple(PermittedRead(at, "gain_estimate") for at in readers)
     source = "'gain_estimate', which is privileged, by permission of the variant."
-    assert trace_finding(permitted.privileged[0]) == f"observer.model reads {source}"
+    assert describe_read(permitted.privileged[0]) == f"observer.model reads {source}"
 
 
 @pytest.mark.parametrize(

@@ -56,8 +56,8 @@ def report_of(result: SystemCheck[Checked]) -> Report:
         Check(
             name=check.name,
             says=words.summary(check),
-            failures=tuple(map(words.problem, check.failures)),
-            remarks=tuple(map(words.problem, check.remarks)),
+            failures=tuple(map(words.describe, check.failures)),
+            remarks=tuple(map(words.describe, check.remarks)),
             judged=not check.unjudged,
         )
         for check in result.checks
@@ -70,7 +70,7 @@ def trace_report_of(trace: Trace[TraceFinding]) -> TraceReport:
     """Return a trace in words."""
     fields: dict[str, Any] = dict(trace)
     for name in ("privileged", "findings"):
-        fields[name] = tuple(map(words.trace_finding, fields[name]))
+        fields[name] = tuple(map(words.describe_read, fields[name]))
     return TraceReport(**fields)
 
 

@@ -2,7 +2,7 @@
 
 from faultpath.core.text import capital, listed
 from faultpath.interface import module_of
-from faultpath.report.sentences.findings import describe
+from faultpath.report.sentences import findings
 from faultpath.run.check.results import (
     Checked,
     Compared,
@@ -114,40 +114,41 @@ def summary(check: Checked) -> str:
             return f"in another order and without some others, {bits}"
 
 
-def problem(found: Problem) -> str:
+def describe(problem: Problem) -> str:
     """Return what is wrong, or may be, as a sentence."""
-    match found:
+    match problem:
         case Stopped():
-            advice = remedy(found.error) if found.in_trial else ""
-            return f"Variant {_under(found.variant, found.condition)}: {found.error}{advice}."
+            advice = remedy(problem.error) if problem.in_trial else ""
+            return f"Variant {_under(problem.variant, problem.condition)}: {problem.error}{advice}."
         case NoneEnded(see):
             return f"No trial of any variant ended: correct first what {_checks(see)} says."
         case NoRoom(variants):
-            how, therefore = _NO_ROOM[found.succeed]
+            how, therefore = _NO_ROOM[problem.succeed]
             names = ", ".join(f"'{name}'" for name in variants)
             who = f"Variants {names} succeed" if variants[1:] else f"Variant {names} succeeds"
-            scenes = f"{found.scenes} checked scenes without a fault"
+            scenes = f"{problem.scenes} checked scenes without a fault"
             return f"{who} in {how} of {scenes}; {therefore}."
         case Unsteady():
             return (
-                f"Variant '{found.variant}' run twice over the same scenes "
-                f"{_difference(found.difference)}; {_CAUSES[found.cause]}"
+                f"Variant '{problem.variant}' run twice over the same scenes "
+                f"{_difference(problem.difference)}; {_CAUSES[problem.cause]}"
             )
         case OrderMatters():
-            return _order(found)
+            return _order(problem)
         case Unpaired():
+            sentence = capital(findings.describe(problem)).rstrip(".")
             return (
-                f"{capital(describe(found)).rstrip('.')}; draw what a scene meets by scene and "
-                "seed, whatever the variant and the fault."
+                f"{sentence}; draw what a scene meets by scene and seed, whatever the variant and "
+                "the fault."
             )
         case Unproven() | Unread():
-            return describe(found)
+            return findings.describe(problem)
         case TwoNames():
-            (first, one), (second, other) = found.first, found.second
+            (first, one), (second, other) = problem.first, problem.second
             return (
                 f"Modules '{first}' of {one} and '{second}' of {other} read "
-                f"{listed(found.reads)} and write {listed(found.writes)}; a fault at either one "
-                "alone reaches one of the two variants. To fault both, give them one name: "
+                f"{listed(problem.reads)} and write {listed(problem.writes)}; a fault at either "
+                "one alone reaches one of the two variants. To fault both, give them one name: "
                 f'@writes(..., name="{first}").'
             )
         case NothingChanged(variant, condition):
@@ -156,32 +157,32 @@ def problem(found: Problem) -> str:
                 "test nothing there."
             )
         case NotFinite():
+            at = f"source '{problem.source}' at step {problem.step}, read by {problem.reader}"
             return (
-                f"Variant {_under(found.variant, found.condition)}: source '{found.source}' at "
-                f"step {found.step}, read by {found.reader}, is not finite in scene "
-                f"{found.scene!r}; give a number at every step."
+                f"Variant {_under(problem.variant, problem.condition)}: {at}, is not finite in "
+                f"scene {problem.scene!r}; give a number at every step."
             )
         case WholeNumbers():
             return (
-                f"Source '{found.source}' gives whole numbers ({found.dtype}) of unit "
-                f"{found.unit}: what is put into such an array loses its fraction, and no fault "
+                f"Source '{problem.source}' gives whole numbers ({problem.dtype}) of unit "
+                f"{problem.unit}: what is put into such an array loses its fraction, and no fault "
                 "can scale or shift it; give floats, or the unit '1' where it counts something."
             )
         case OtherMagnitude():
             return (
-                f"Source '{found.source}' declares a typical magnitude of {found.declared:g} "
-                f"{found.unit}, but its largest reading is {found.largest:.3g}; give it in "
-                f"{found.unit}, or correct the declared unit or scale."
+                f"Source '{problem.source}' declares a typical magnitude of {problem.declared:g} "
+                f"{problem.unit}, but its largest reading is {problem.largest:.3g}; give it in "
+                f"{problem.unit}, or correct the declared unit or scale."
             )
         case Diverged():
             return (
-                f"Source '{found.source}' gives readings of up to {found.largest:.3g}: look for a "
-                "loop that is unstable without any fault."
+                f"Source '{problem.source}' gives readings of up to {problem.largest:.3g}: look for "
+                "a loop that is unstable without any fault."
             )
         case TapFault():
-            (channel, reader), trials = found.tap, found.trials
-            point = f"Injection point {channel} -> {reader} of variant '{found.variant}'"
-            return f"{point}, faulted in {trials} trials, {_tap_fault(found)}"
+            (channel, reader), trials = problem.tap, problem.trials
+            point = f"Injection point {channel} -> {reader} of variant '{problem.variant}'"
+            return f"{point}, faulted in {trials} trials, {_tap_fault(problem)}"
 
 
 def remedy(error: str) -> str:
@@ -210,20 +211,21 @@ def _difference(difference: Difference) -> str:
     return text
 
 
-def _order(found: OrderMatters) -> str:
-    lead = f"Variant '{found.variant}' run in another order, without some of the scenes beside it,"
-    differs = _difference(found.difference)
-    if found.cause == "dependence":
+def _order(problem: OrderMatters) -> str:
+    lead = f"Variant '{problem.variant}' run in another order, "
+    lead += "without some of the scenes beside it,"
+    differs, gap = _difference(problem.difference), problem.gap
+    if problem.cause == "dependence":
         return (
             f"{lead} {differs}; let nothing that scenes of one call of run() share decide a "
             "result, draw by scene, and wrap a torch module in faultpath.system.row_wise."
         )
-    if found.cause == "last digit":
+    if problem.cause == "last digit":
         return (
             f"{lead} {differs}; but so it does where readings change in their last digits, and "
             "rounding cannot be told from dependence: use faultpath.system.row_wise."
         )
-    size = f"by at most {found.gap:.1g} of a value" if found.gap else "in digits that no sum shows"
+    size = f"by at most {gap:.1g} of a value" if gap else "in digits that no sum shows"
     return (
         f"{lead} differs by rounding alone, {size}, as it does where readings change in "
         "their last digits: only with blocks of the same scenes does an audit repeat to "
@@ -231,18 +233,18 @@ def _order(found: OrderMatters) -> str:
     )
 
 
-def _tap_fault(found: TapFault) -> str:
-    module = module_of(found.tap[1])
-    match found.wrong:
+def _tap_fault(fault: TapFault) -> str:
+    module = module_of(fault.tap[1])
+    match fault.wrong:
         case "alters another tap":
-            channel, reader = found.other
+            channel, reader = fault.other
             return (
                 f"altered a reading at {channel} -> {reader} too, which the fault does not name; "
                 "trust no result of this version of faultpath, and report it."
             )
         case "not delivered":
-            if found.error:
-                return f"is not reached: {found.error}."
+            if fault.error:
+                return f"is not reached: {fault.error}."
             return (
                 "delivered nothing, though it did without the fault; deliver at every step that "
                 "reads, and keep nothing from one call of run() to the next."
@@ -253,15 +255,15 @@ def _tap_fault(found: TapFault) -> str:
             )
         case "reads elsewhere":
             return (
-                f"had no effect, and '{module}' wrote another {found.outputs[0]} at step "
-                f"{found.step} in scene {found.scene!r} where all that it was handed was the same: "
+                f"had no effect, and '{module}' wrote another {fault.outputs[0]} at step "
+                f"{fault.step} in scene {fault.scene!r} where all that it was handed was the same: "
                 "it takes a value from elsewhere, past its injection points. Let it use what it is "
                 "handed."
             )
-        case "no effect" if found.outputs:
+        case "no effect" if fault.outputs:
             return (
                 f"had no effect because the output of '{module}' never changed in any trial: "
-                f"{listed(found.outputs)} stayed what it is without the fault. Look whether it "
+                f"{listed(fault.outputs)} stayed what it is without the fault. Look whether it "
                 "uses this reading, and choose scenes in which that matters."
             )
         case "no effect":
@@ -273,14 +275,14 @@ def _tap_fault(found: TapFault) -> str:
             )
 
 
-def trace_finding(found: TraceFinding) -> str:
+def describe_read(finding: TraceFinding) -> str:
     """Return a read that is privileged or not as declared, as a sentence."""
-    match found:
+    match finding:
         case NeverRead():
             return (
-                f"Variant '{found.variant}' declares that {found.reader} reads "
-                f"'{found.channel}', but in the first {found.steps} steps it did not; trace more "
-                "--steps, or take it out of the variant's readers."
+                f"Variant '{finding.variant}' declares that {finding.reader} reads "
+                f"'{finding.channel}', but in the first {finding.steps} steps it did not; trace "
+                "more --steps, or take it out of the variant's readers."
             )
         case EndedEarly(error):
             return f"The run ended early: {error}."
