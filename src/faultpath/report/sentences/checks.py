@@ -176,8 +176,8 @@ def describe(problem: Problem) -> str:
             )
         case Diverged():
             return (
-                f"Source '{problem.source}' gives readings of up to {problem.largest:.3g}: look for "
-                "a loop that is unstable without any fault."
+                f"Source '{problem.source}' gives readings of up to {problem.largest:.3g}: look "
+                "for a loop that is unstable without any fault."
             )
         case TapFault():
             (channel, reader), trials = problem.tap, problem.trials

@@ -12,12 +12,11 @@ from faultpath.core.text import unknown
 from faultpath.faults import AnyIntervention, Erase, Fault, Offset, Scale, resolve
 from faultpath.faults import Sequence as InTurn
 from faultpath.run import SystemSpec, Treatment
-from faultpath.run.check.blocks import BlockSpec, RecordedBlock, coarsest, run_blocks
+from faultpath.run.check.blocks import UNDER, BlockSpec, RecordedBlock, Seen, coarsest, run_blocks
 from faultpath.run.check.delivery import HELD, MOVED, reader_at, unanswered
 from faultpath.run.check.judging import judged
 from faultpath.run.check.reads import Read
 from faultpath.run.check.results import Checked
-from faultpath.run.check.seen import UNDER, Seen
 from faultpath.run.execution.dispatch import Built
 from faultpath.run.question import CheckQuestion
 from faultpath.run.work.processes import local

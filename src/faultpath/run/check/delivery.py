@@ -7,9 +7,8 @@ from dataclasses import replace
 from faultpath.interface import module_of
 from faultpath.loop import Plant
 from faultpath.run.attempt import Done
-from faultpath.run.check.blocks import RecordedBlock
+from faultpath.run.check.blocks import RecordedBlock, Seen
 from faultpath.run.check.results import Checked, Faulted, NothingChanged, Problem, Tap, TapFault
-from faultpath.run.check.seen import Seen
 from faultpath.run.execution.recheck import deviation
 from faultpath.system.loop_system import LoopSystem
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 from itertools import combinations
 
 from faultpath.loop import Module
-from faultpath.run.check.blocks import TRIALS, coarsest, gap_of
+from faultpath.run.check.blocks import TRIALS, Seen, coarsest, condition_of, gap_of
 from faultpath.run.check.delivery import HELD, MOVED, delivery
 from faultpath.run.check.results import (
     Checked,
@@ -27,7 +27,6 @@ from faultpath.run.check.results import (
     Unsteady,
     WholeNumbers,
 )
-from faultpath.run.check.seen import Seen, condition_of
 from faultpath.run.deliveries import unproven, unread
 from faultpath.run.findings import Unpaired
 from faultpath.run.pairing import unlike
