@@ -80,7 +80,7 @@ _CAUSES = {
 
 def summary(check: Checked) -> str:
     """Return the line of a check: what was seen, or why nothing could be."""
-    if check.unjudged and not check.failures:
+    if check.unjudged and not (check.unjudged == "last digit" and check.failures):
         return _UNJUDGED[check.unjudged]
     match check.summary:
         case NoneEnded(see):
