@@ -9,8 +9,8 @@ used, so importing this is quick.
 from typing import TYPE_CHECKING
 
 from faultpath import api as api
+from faultpath.core import __version__
 from faultpath.core.lazy import load
-from faultpath.core.version import __version__
 
 if TYPE_CHECKING:
     from faultpath.api.audit import audit

@@ -126,7 +126,7 @@ STOPPED_WHILE_LOADING = """
 import os, signal, sys
 class Stop:
     def find_spec(self, name, *_):
-        if name == "faultpath.cli.audits":
+        if name == "faultpath.cli.runs":
             try:
                 os.kill(os.getpid(), signal.SIGINT)
                 signal.sigtimedwait([], 1)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from outcomes import outcome, trial
 
+from faultpath.report.sentences.findings import describe
 from faultpath.run.pairing import Group, PairingRefused, Pairs, pair
 from faultpath.run.trials import Trial, Trials
 from faultpath.system import Status
@@ -71,8 +72,9 @@ def test_other_conditions_void_the_pair_and_name_both_hashes(name, what):
     pairs = pair(table, ONE, TWO)
     assert (pairs.void.sum(), whole(pairs)) == (1, ["a", "c"])
     (unpaired,) = pairs.unpaired
-    assert f"in scene 'b' (seed 5): their {what} differ ({name} 'other' and " in str(unpaired)
-    assert repr(getattr(outcome("b", seed=5), name)) in str(unpaired)
+    sentence = describe(unpaired)
+    assert f"in scene 'b' (seed 5): their {what} differ ({name} 'other' and " in sentence
+    assert repr(getattr(outcome("b", seed=5), name)) in sentence
     np.testing.assert_array_equal(pairs.whole().success[1], [[0, 0], [0, 1]])
 
 

@@ -12,8 +12,9 @@ from written import written
 
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.loop import Taps
-from faultpath.run.check.judging import remedy
-from faultpath.run.check.remarks import ENOUGH, diverged, other_names, successes, without_room
+from faultpath.report.sentences.checks import describe, remedy
+from faultpath.run.check.judging import ENOUGH, diverged, other_names, without_room
+from faultpath.run.check.results import Diverged, NoRoom, TwoNames
 from faultpath.system import ComposedSystem, Outcome, Status, writes
 
 INDEPENDENCE = "scene independence"
@@ -68,7 +69,8 @@ def test_a_sound_system_passes(name, library):
 
 
 def test_where_no_trial_ends_that_check_fails_and_names_the_one_to_see():
-    trials = check(broken="shape").checks[0]
+    trials, *others = check(broken="shape").checks
+    assert {other.says for other in others} == {"no variant ran to its end"}
     assert (trials.status, trials.says) == ("failed", "none did; see *shape and unit*")
     (said,) = trials.failures
     assert said.startswith("No trial of any variant ended: correct first what *shape and unit*")
@@ -131,19 +133,20 @@ def test_a_baseline_that_always_ends_alike_leaves_an_audit_no_room():
 
     crashes = ends(ENOUGH, *[Status.CRASH] * ENOUGH)
     above, below = without_room({"bare": ends(ENOUGH), "guarded": ends(ENOUGH), "lost": crashes})
-    assert above.startswith("Variants 'bare', 'guarded' succeed in all of 20 checked scenes")
-    assert below.startswith("Variant 'lost' succeeds in none of 20 checked scenes")
+    assert above == NoRoom(("bare", "guarded"), succeed=True, scenes=20)
+    assert below == NoRoom(("lost",), succeed=False, scenes=20)
+    assert describe(above).startswith("Variants 'bare', 'guarded' succeed in all of 20 checked sce")
+    assert describe(below).startswith("Variant 'lost' succeeds in none of 20 checked scenes")
     assert without_room({"bare": ends(ENOUGH - 1)}) == ()  # too few to say so
     for odd in (Status.CRASH, Status.FAILED):
         assert without_room({"bare": ends(ENOUGH, odd)}) == ()
 
 
-def test_a_check_counts_successes_and_sees_what_diverged():
-    rows = [Outcome("w0", how, 1.0, "a", "b", "c") for how in (Status.SUCCESS, Status.CRASH)]
-    counted = successes({"bare": rows, "guarded": rows[:1]})
-    assert counted == "3 under correct inputs; successes: bare 1 of 2, guarded 1 of 1"
+def test_a_check_sees_what_diverged():
     assert diverged({"height": (-2.0, 3.0)}) == ()
-    assert "Source 'height' gives readings of up to 2e+259" in diverged({"height": (-2e259, 1)})[0]
+    assert diverged({"height": (-2e259, 1)}) == (Diverged("height", 2e259),)
+    sentence = describe(Diverged("height", 2e259))
+    assert sentence.startswith("Source 'height' gives readings of up to 2e+259: look")
 
 
 def test_a_check_says_that_a_system_is_at_its_ceiling():
@@ -176,8 +179,11 @@ def test_modules_that_stand_for_each_other_under_two_names_are_a_remark():
         units: dict[str, str] = dict.fromkeys(("speed", "slope", "push"), "1")
         return ComposedSystem("cart", plant, variants, units)
 
-    (said,) = other_names(cart("nominal"), ["old", "new"])
-    assert said.startswith("Modules 'observer' of old and 'nominal' of new read speed and write")
+    (remark,) = other_names(cart("nominal"), ["old", "new"])
+    assert remark == TwoNames(("observer", "old"), ("nominal", "new"), ("speed",), ("slope",))
+    assert describe(remark).startswith(
+        "Modules 'observer' of old and 'nominal' of new read speed and write"
+    )
     assert other_names(cart("observer"), ["old", "new"]) == ()
 
 

@@ -10,8 +10,9 @@ from cli_runs import ROOT, TOY, faultpath
 from faultpath.core.errors import UserError
 from faultpath.faults import FaultText
 from faultpath.interface import Provenance
+from faultpath.report.sentences.checks import describe_read
 from faultpath.report.terminal import trace_table
-from faultpath.run.check.tracing import trace_system
+from faultpath.run.check.tracing import PermittedRead, trace_system
 from faultpath.run.plan import SystemSpec
 from faultpath.run.question import TraceQuestion
 from faultpath.run.registry import load_system
@@ -72,7 +73,7 @@ def test_what_is_not_as_declared_is_found(name, variant, broken, said):
         return
     _, found = trace(name, variant, broken=broken)
     assert len(found.findings) == 1
-    assert re.search(said, found.findings[0])
+    assert re.search(said, describe_read(found.findings[0]))
 
 
 def test_a_privileged_read_without_permission_is_found():
@@ -86,8 +87,10 @@ def test_a_privileged_read_without_permission_is_found():
     question = TraceQuestion(variant="calibrated", library="carts")
     permitted = trace_system(system, SystemSpec(name=TOY), question)
     assert permitted.findings == ()
-    readers = [each.split(" reads")[0] for each in permitted.privileged]
-    assert readers == ["observer.model", "controller.inverse"]
+    readers = ("observer.model", "controller.inverse")
+    assert permitted.privileged == tuple(PermittedRead(at, "gain_estimate") for at in readers)
+    source = "'gain_estimate', which is privileged, by permission of the variant."
+    assert describe_read(permitted.privileged[0]) == f"observer.model reads {source}"
 
 
 @pytest.mark.parametrize(

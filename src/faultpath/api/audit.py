@@ -129,7 +129,7 @@ def carry_out(audit: AuditAnalysis, job: Job, signals: bool = True) -> Run:
             record = with_stored(folder, audit.conclude(result.trials, deliveries))
     recorded = dict(sorted(recorded.items()))
     write_text(folder / RECORD, as_text(record), folder)
-    write_text(folder / SYSTEM, shown.model_dump_json(indent=1) + "\n", folder)
+    write_text(folder / SYSTEM, as_text(shown), folder)
     if recorded:
         write_file(folder / SIGNALS, encode_signals(recorded), folder)
     files = (*MADE_FROM, SIGNALS) if recorded else MADE_FROM

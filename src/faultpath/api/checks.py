@@ -12,8 +12,7 @@ from faultpath.run.work.executor import Progress
 from faultpath.system.system import System
 
 if TYPE_CHECKING:
-    from faultpath.run.check.check import Report
-    from faultpath.run.check.tracing import TraceReport
+    from faultpath.report.checks import Report, TraceReport
 
 
 @with_question_signature(CheckQuestion)
@@ -34,6 +33,7 @@ def check(
     Raises:
         UserError: There is no such system, variant or library, or it cannot be built.
     """
+    from faultpath.report.checks import report_of
     from faultpath.run.check.check import chosen_variants, run_checks
 
     question, chosen, _, display = begin("check", CheckQuestion, system, arguments, progress)
@@ -48,7 +48,7 @@ def check(
         def note(done: int, known: int | None) -> None:
             show(Progress(done, known, f"{done} of {known} runs" if known else f"{done} runs"))
 
-        return run_checks(chosen.system, chosen.spec, question, note, conditions)
+        return report_of(run_checks(chosen.system, chosen.spec, question, note, conditions))
 
 
 @with_question_signature(TraceQuestion)
@@ -68,7 +68,8 @@ def trace(
         UserError: There is no such system, variant, library or scene, the fault reaches no
             module, or the run fails.
     """
+    from faultpath.report.checks import trace_report_of
     from faultpath.run.check.tracing import trace_system
 
     question, chosen, _, _ = begin("api.trace", TraceQuestion, system, arguments, progress)
-    return trace_system(chosen.system, chosen.spec, question)
+    return trace_report_of(trace_system(chosen.system, chosen.spec, question))

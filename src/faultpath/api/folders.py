@@ -74,7 +74,7 @@ def read_provenance(folder: Path) -> RunProvenance:
 
 
 def as_text(record: BaseModel) -> str:
-    """Return a result as its file holds it."""
+    """Return data as its file holds it."""
     return record.model_dump_json(indent=1) + "\n"
 
 

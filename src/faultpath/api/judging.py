@@ -142,7 +142,7 @@ def _stored(folder: Path, paired: PairedResults, system: SystemShown) -> RunResu
     )
     deliveries = Deliveries(rows=taps, findings=paired.findings)
     digest = RunFolder(folder).save_tables(trials, deliveries)
-    write_text(folder / SYSTEM, system.model_dump_json(indent=1) + "\n", folder)
+    write_text(folder / SYSTEM, as_text(system), folder)
     return RunResult(
         trials=trials,
         deliveries=deliveries,

@@ -14,10 +14,10 @@ from typing import Annotated, Any
 
 import typer
 
-from faultpath.cli import audits, demo, designs, replay, systems
+from faultpath.cli import replay, runs, systems
 from faultpath.cli.flags import with_system_flags
 from faultpath.cli.options import Verbs
-from faultpath.core.version import __version__
+from faultpath.core import __version__
 
 _TOY = "examples/toy.py:create"
 _ASKED = f"{_TOY} --baseline calibrated --repair blind --fault gain:scale"
@@ -39,27 +39,27 @@ class Command:
 
 _PANELS = {
     "Begin here": (
-        Command("demo", demo.demo, "--out runs/demo", "Audit a small system that ships along."),
+        Command("demo", runs.demo, "--out runs/demo", "Audit a small system that ships along."),
         Command("init", systems.init, "mine --with numpy", "Write a system of your own to start."),
         Command(
             "check", systems.check, _TOY, "Check that a system can be audited.", of_a_system=True
         ),
         Command(
             "audit",
-            audits.audit,
+            runs.audit,
             f"{_ASKED}=0.6 --library carts",
             "Compare a repair with a baseline, module by module and shared.",
             of_a_system=True,
         ),
         Command(
             "judge",
-            audits.judge,
+            runs.judge,
             "results.csv --baseline old --repair new",
             "Compare two versions in trials that other tools ran.",
         ),
         Command(
             "report",
-            audits.report,
+            runs.report,
             "runs/one runs/two --out comparison.html",
             "Write the pages of finished runs, or compare them.",
         ),
@@ -70,14 +70,14 @@ _PANELS = {
         ),
         Command(
             "map",
-            designs.reversal_map,
+            runs.reversal_map,
             f"{_ASKED} --against controller,observer --up-to 0.4 --library carts",
             "Compare over the errors of two modules.",
             of_a_system=True,
         ),
         Command(
             "scan",
-            designs.scan,
+            runs.scan,
             f"{_TOY} --variant calibrated --fault gain:scale=1.2 --library carts",
             "Find which errors of a system's inputs cancel.",
             of_a_system=True,

@@ -11,8 +11,7 @@ import typer
 from typer.core import TyperCommand, TyperOption
 
 from faultpath.core.errors import UserError
-from faultpath.core.numbers import number_in, whole_in
-from faultpath.core.text import has_control_characters, one_line
+from faultpath.core.text import has_control_characters, number_in, one_line, whole_in
 
 if TYPE_CHECKING:
     from faultpath.api.display import Display

@@ -39,11 +39,12 @@ def trace(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     Exits with 1 where that differs from what is declared."""
     from faultpath.api.display import SafeConsole
     from faultpath.api.job import begin
+    from faultpath.report.checks import trace_report_of
     from faultpath.report.terminal import STYLES, Parted, interface_table, trace_table
     from faultpath.run.check.tracing import trace_system
 
     question, chosen, _, _ = begin("api.trace", TraceQuestion, system, arguments, display())
-    trace = trace_system(chosen.system, chosen.spec, question)
+    trace = trace_report_of(trace_system(chosen.system, chosen.spec, question))
     if as_json:
         typer.echo(trace.model_dump_json(indent=2))
         return FOUND if trace.findings else 0
@@ -65,39 +66,13 @@ def check(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     """Check what a careful reviewer would: that trials repeat and can be paired, that modules read
     what is declared, and that a fault reaches every injection point. Exits with 1 where a check
     fails."""
-    from rich.padding import Padding
-    from rich.text import Text
-
     from faultpath.api.checks import check
     from faultpath.api.display import SafeConsole
-    from faultpath.core.text import counted
-    from faultpath.report.terminal import STYLES
+    from faultpath.report.checks import check_lines
 
     report = check(system, **arguments, progress=display())
     if as_json:
         typer.echo(report.model_dump_json(indent=2))
-        return FOUND if report.failures else 0
-    console = SafeConsole()
-    styles = {"passed": STYLES["good"], "failed": STYLES["bad"], "not judged": STYLES["faint"]}
-    scenes = f"{len(report.scenes)} of {counted(report.of, 'scene')} of {report.library}"
-    fault = f", and with {report.fault}" if report.fault else ""
-    about = f"{', '.join(report.variants)} in {scenes}, seed {report.seed}{fault}"
-    console.print(Text(f"{report.system}: {about}", "bold"))
-    unjudged: dict[str, list[str]] = {}
-    for result in report.checks:
-        if result.status == "not judged" and not result.remarks:
-            unjudged.setdefault(result.says, []).append(result.name)
-            continue
-        status = Text(result.status, styles[result.status])
-        console.print(Text.assemble(status, f"  {result.name}: {result.says}"))
-        for text in (*result.failures, *(f"Remark: {remark}" for remark in result.remarks)):
-            console.print(Padding(Text(f"- {text}"), (0, 0, 0, 2)))
-    for says, names in unjudged.items():
-        status = Text("not judged", styles["not judged"])
-        console.print(Text.assemble(status, f"  {', '.join(names)}: {says}"))
-    failed = sum(result.status == "failed" for result in report.checks)
-    remarks = counted(sum(len(result.remarks) for result in report.checks), "remark")
-    text = f"{counted(failed, 'check')} failed" if failed else "No check failed"
-    text += "." if remarks.startswith("0") else f"; {remarks}."
-    console.print(Text(text, STYLES["bad" if failed else "good"]))
+    else:
+        SafeConsole().print(check_lines(report))
     return FOUND if report.failures else 0

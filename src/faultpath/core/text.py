@@ -1,5 +1,6 @@
-"""Text made safe for a terminal, parts of sentences, and names that do not exist."""
+"""Text made safe for a terminal, parts of sentences, names that do not exist, numbers in text."""
 
+import math
 import os
 import re
 import sys
@@ -8,6 +9,11 @@ from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 from typing import Any
 
+ADDRESS = " at 0x[0-9a-f]+"
+"""Pattern of where an object lies, as its `repr` says; another one in each process."""
+LARGEST_NUMBER = 1e300
+"""Size up to which sums and differences of a million numbers stay finite."""
+_DIGITS = 19
 _WORD = re.compile(r"\S{240,}")
 _LONGEST = 4000
 _MOST, _FEW = 20, 8
@@ -91,6 +97,42 @@ def unknown(what: str, name: str, known: Iterable[str]) -> str:
     shown = known if len(known) <= _MOST else get_close_matches(name, known, _FEW, cutoff=0.0)
     more = f" and {len(known) - len(shown)} more" if len(shown) < len(known) else ""
     return f"unknown {what} '{name}'; {hint}known: {listed(shown)}{more}"
+
+
+def number_in(text: str) -> float:
+    """Return the number in a text; `ValueError` says what is needed instead."""
+    text = text.strip()
+    try:  # Python reads 1_0 as ten, and digits of every script
+        number = float(text if text.isascii() and "_" not in text else "no number")
+    except ValueError:
+        raise ValueError("a number") from None
+    if not math.isfinite(number):
+        raise ValueError("a finite number")
+    if number == 0.0 and re.match(r"[-+.0]*[1-9]", text):
+        raise ValueError("0, or a number that does not round to it")
+    return number
+
+
+def number_of(value: object) -> float:
+    """Return a number, or the number in a text, that is small enough for sums.
+
+    Raises as `number_in`.
+    """
+    if not isinstance(value, str | int | float):
+        raise ValueError("a number")
+    number = number_in(value) if isinstance(value, str) else value
+    if not abs(number) <= LARGEST_NUMBER:
+        raise ValueError(f"a number from {-LARGEST_NUMBER:g} to {LARGEST_NUMBER:g}")
+    return float(number)
+
+
+def whole_in(text: str) -> int:
+    """Return the whole number in a text; `ValueError` says what is needed instead."""
+    if not re.fullmatch(r"[-+]?[0-9]+", text):
+        raise ValueError("a whole number")
+    if len(text.lstrip("+-")) > _DIGITS:
+        raise ValueError(f"a number of at most {_DIGITS} digits")
+    return int(text)
 
 
 def near(file: str) -> str:

@@ -8,8 +8,7 @@ from typing import Any, TypeAlias
 from pydantic import ValidationError
 
 from faultpath.core.errors import SystemMistake, UserError
-from faultpath.core.numbers import number_in
-from faultpath.core.text import listed, unknown
+from faultpath.core.text import listed, number_in, unknown
 from faultpath.core.validation_messages import misfit_of
 from faultpath.faults.fault import Fault, resolve
 from faultpath.faults.kinds import INTERVENTIONS, installed_kinds, intervention_of

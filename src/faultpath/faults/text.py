@@ -20,7 +20,7 @@ from typing import Self
 from pydantic_core import CoreSchema, core_schema
 
 from faultpath.core.errors import UserError
-from faultpath.core.numbers import number_in
+from faultpath.core.text import number_in
 
 _NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _SIZE = re.compile(rf"{_NUMBER}(?:/{_NUMBER})*")

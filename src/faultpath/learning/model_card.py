@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Literal, Self, TypeVar
 
 from pydantic import Field
 
+from faultpath.core import __version__
 from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import write_file, write_text
 from faultpath.core.files.opening import contents
 from faultpath.core.files.plain import Misread, model_of
 from faultpath.core.results import Frozen
-from faultpath.core.version import __version__
 from faultpath.learning.repair import Repair
 from faultpath.learning.tensor_files import encoded, safetensors
 from faultpath.loop import TapCount

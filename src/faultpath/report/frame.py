@@ -17,10 +17,9 @@ from typing import Any
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
-from faultpath.core.errors import UserError
-from faultpath.core.files.atomic import check_mark, is_run, make_folder, write_text
+from faultpath.core import __version__
+from faultpath.core.files.atomic import check_mark, holds_others, is_run, make_folder, write_text
 from faultpath.core.text import counted
-from faultpath.core.version import __version__
 from faultpath.report.escapes import unbroken, visible
 from faultpath.report.sentences import wording
 
@@ -70,9 +69,7 @@ def write_pages(files: Mapping[str, str], folder: Path) -> list[Path]:
     elif not is_run(folder) and (
         others := [name for name in files if os.path.lexists(folder / name)]
     ):
-        raise UserError(
-            f"{folder} already holds {others[0]}, which this run did not write: give a new folder."
-        )
+        raise holds_others(folder, others[0])
     make_folder(folder)
     for name, text in files.items():
         write_text(folder / name, text, folder)

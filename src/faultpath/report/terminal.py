@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from textwrap import fill
+from typing import Any
 
 from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
 from rich.padding import Padding
@@ -22,7 +23,7 @@ from faultpath.report.sentences.phrases import (
     stopping,
 )
 from faultpath.report.tables import Entry, Line, Table, Tone, line
-from faultpath.run.check.tracing import TracedRead, TraceReport
+from faultpath.run.check.tracing import Trace, TracedRead
 
 STYLES: dict[Tone, str] = {"": "", "good": "green", "bad": "bold red", "faint": "dim"}
 """How tones look."""
@@ -118,7 +119,7 @@ def interface_table(interface: Interface) -> RenderableType:
     return Group(drawn(table), *reconstructions)
 
 
-def trace_table(trace: TraceReport) -> Table:
+def trace_table(trace: Trace[Any]) -> Table:
     """Return a line for each reader of a channel, in the order in which they read."""
     taps: dict[tuple[str, str], list[TracedRead]] = {}
     for read in trace.reads:

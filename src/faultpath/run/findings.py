@@ -1,7 +1,7 @@
 """Findings in the trials of a run that a reader of its results has to know, as data.
 
-`faultpath.report.sentences.findings` says them. The few kinds that `faultpath check` and errors of
-a run name too have their words here, as `str`.
+`faultpath.report.sentences.findings` says them. A deviation, which errors of a run name too, has
+its words here, as `str`.
 """
 
 from collections.abc import Sequence
@@ -11,7 +11,6 @@ from pydantic import Field
 
 from faultpath.core.results import Result
 from faultpath.core.text import counted
-from faultpath.run.trials import HASHES
 
 Unit: TypeAlias = Literal["scene", "task"]
 """Unit that counts as one in results of other tools: a scene, or a task with all its scenes."""
@@ -89,16 +88,6 @@ class Unpaired(Result):
         """Return one finding that counts all and shows the first; nothing without any."""
         return tuple(pair.model_copy(update={"others": len(pairs) - 1}) for pair in pairs[:1])
 
-    def __str__(self) -> str:
-        one, two = (f"{variant} under {under}" for variant, under in (self.first, self.second))
-        hashes = "; ".join(f"{name} {a[:8]!r} and {b[:8]!r}" for name, a, b in self.differences)
-        what = " and ".join(HASHES[name] for name, _, _ in self.differences)
-        others = f"; so do those of {counted(self.others, 'other pair')}" if self.others else ""
-        return (
-            f"{one} and {two} are no pair in scene {self.scene!r} (seed {self.seed}): their {what} "
-            f"differ ({hashes}){others}."
-        )
-
 
 class Unproven(Result):
     """All scenes carry the same hashes, which so prove nothing about the pairs."""
@@ -106,13 +95,6 @@ class Unproven(Result):
     kind: Literal["unproven"] = "unproven"
     scenes: int
     hashes: tuple[str, ...]
-
-    def __str__(self) -> str:
-        return (
-            f"All {self.scenes} scenes carry the same hashes of initial state, disturbance and "
-            f"planner noise ({', '.join(map(repr, self.hashes))}), so nothing proves that two "
-            "trials met the same conditions: hash what each scene begins with and meets."
-        )
 
 
 class Unread(Result):
@@ -122,12 +104,6 @@ class Unread(Result):
     variant: str
     channel: str
     reader: str
-
-    def __str__(self) -> str:
-        return (
-            f"Variant '{self.variant}' declares that {self.reader} reads '{self.channel}', but it "
-            "never did: take it out of the variant's readers, or deliver the channel to it."
-        )
 
 
 class RaisedTogether(Result):

@@ -14,13 +14,13 @@ from typing import Annotated
 
 from pydantic import ConfigDict, Field, StringConstraints
 
+from faultpath.core import __version__
 from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import write_text
 from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.plain import model_of
 from faultpath.core.results import Frozen, Shown
 from faultpath.core.trees import packages, release
-from faultpath.core.version import __version__
 from faultpath.run.execution.runner import RunResult
 from faultpath.run.findings import Recheck
 from faultpath.run.store.folder import read_regular

@@ -7,7 +7,7 @@ from typing import Annotated, cast
 
 from pydantic import BeforeValidator, Field, PlainSerializer
 
-from faultpath.core.numbers import number_in
+from faultpath.core.text import number_in
 
 LARGEST = 2**63 - 1
 """The largest seed that the tables hold."""

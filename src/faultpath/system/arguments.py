@@ -15,7 +15,7 @@ import numpy as np
 
 from faultpath.core.error_source import mistake_in
 from faultpath.core.errors import SystemMistake
-from faultpath.core.text import counted
+from faultpath.core.text import ADDRESS, counted
 from faultpath.loop import Module
 from faultpath.system import declared
 from faultpath.system.outcome import Metric
@@ -135,4 +135,4 @@ def _mapping(name: str, value: Any, example: str) -> Mapping[str, Any]:
 
 def shown(value: Any) -> str:
     """Return a wrong value in one line, without its address in memory."""
-    return re.sub(" at 0x[0-9a-f]+", "", declared.shown(value))
+    return re.sub(ADDRESS, "", declared.shown(value))

@@ -17,6 +17,7 @@ from typing_extensions import override
 from faultpath.core.arrays import HostArray
 from faultpath.core.errors import SystemMistake
 from faultpath.core.streams import generator
+from faultpath.core.text import ADDRESS
 from faultpath.core.trees import release
 from faultpath.system.arguments import check_call
 from faultpath.system.episodes import (
@@ -34,7 +35,7 @@ from faultpath.system.outcome import Metric
 Setup = Callable[[Any, np.random.Generator], Mapping[str, Any] | None]
 OnStep = Callable[[Any, np.random.Generator, int], None]
 
-_LOCATION = re.compile(r"(?<=faultpath_system_)\w*(?=:)| at 0x[0-9a-f]+")
+_LOCATION = re.compile(rf"(?<=faultpath_system_)\w*(?=:)|{ADDRESS}")
 """A system's module, which is named after the path of its file, and a function's address in memory:
 both differ from machine to machine."""
 

@@ -10,9 +10,9 @@ import numpy as np
 
 from faultpath.core.arrays import HostArray
 from faultpath.core.errors import SystemMistake
-from faultpath.core.text import listed
+from faultpath.core.text import ADDRESS, listed
 
-_LOCATION = re.compile(r"faultpath_system_\w+\.| at 0x[0-9a-f]+")
+_LOCATION = re.compile(rf"faultpath_system_\w+\.|{ADDRESS}")
 """The module of a system, named after the path of its file, and an object's address in memory."""
 
 

@@ -21,7 +21,7 @@ from pydantic import BaseModel, PydanticSchemaGenerationError, TypeAdapter, Vali
 from pydantic.fields import FieldInfo
 
 from faultpath.core.errors import UserError
-from faultpath.core.numbers import number_in, whole_in
+from faultpath.core.text import number_in, whole_in
 from faultpath.core.validation_messages import misfit_of
 
 Factory = Callable[..., object]

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import StringConstraints
 
-from faultpath.core.numbers import LARGEST
 from faultpath.core.results import Frozen
+from faultpath.core.text import LARGEST_NUMBER
 from faultpath.interface.declaration import Words
 from faultpath.system.declared import shown
 
@@ -169,8 +169,8 @@ def _number(name: str, value: Any) -> float:
         number = float(value)
     except OverflowError:
         number = math.inf
-    if not abs(number) <= LARGEST:
-        raise _Malformed(f"{name} is {number}: give a finite number of at most {LARGEST:g}")
+    if not abs(number) <= LARGEST_NUMBER:
+        raise _Malformed(f"{name} is {number}: give a finite number of at most {LARGEST_NUMBER:g}")
     return number
 
 

@@ -82,7 +82,12 @@ def begin(folder: Path) -> None:
 def check_free(folder: Path) -> None:
     """Raise `UserError` for a folder in which a run would begin among other files."""
     if names := sorted(file.name for file in folder.glob("*") if not file.name.startswith(".")):
-        raise UserError(f"{folder} holds {names[0]}, which is not of this run: give a new folder.")
+        raise holds_others(folder, names[0])
+
+
+def holds_others(folder: Path, name: str) -> UserError:
+    """Return the error of a folder that holds a file of no run."""
+    return UserError(f"{folder} holds {name}, which is not of this run: give a new folder.")
 
 
 def check_folder(path: Path) -> None:

@@ -16,7 +16,7 @@ from yaml.events import AliasEvent, CollectionEndEvent, CollectionStartEvent, No
 from yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
 from faultpath.core.errors import UserError
-from faultpath.core.numbers import number_in, whole_in
+from faultpath.core.text import number_in, whole_in
 from faultpath.core.validation_messages import misfit_of
 
 LONGEST = 1_000_000

@@ -20,6 +20,7 @@ from faultpath.run.findings import (
     Unrecorded,
     Unrepeated,
 )
+from faultpath.run.trials import HASHES
 
 
 def of_audit(result: AuditResult) -> tuple[str, ...]:
@@ -36,8 +37,21 @@ def of_audit(result: AuditResult) -> tuple[str, ...]:
 def describe(finding: Finding) -> str:
     """Return a finding as a sentence or two."""
     match finding:
-        case Unpaired() | Unproven() | Unread():
-            return str(finding)  # as `faultpath check` says it
+        case Unpaired():
+            return _unpaired(finding)
+        case Unproven():
+            return (
+                f"All {finding.scenes} scenes carry the same hashes of initial state, disturbance "
+                f"and planner noise ({', '.join(map(repr, finding.hashes))}), so nothing proves "
+                "that two trials met the same conditions: hash what each scene begins with and "
+                "meets."
+            )
+        case Unread():
+            return (
+                f"Variant '{finding.variant}' declares that {finding.reader} reads "
+                f"'{finding.channel}', but it never did: take it out of the variant's readers, or "
+                "deliver the channel to it."
+            )
         case Recheck():
             return _recheck(finding)
         case RaisedTogether():
@@ -78,6 +92,17 @@ def describe(finding: Finding) -> str:
                 "No trial ended without success, and some say nothing: where `failed` or an empty "
                 "cell means no success, write 0."
             )
+
+
+def _unpaired(finding: Unpaired) -> str:
+    one, two = (f"{variant} under {under}" for variant, under in (finding.first, finding.second))
+    hashes = "; ".join(f"{name} {a[:8]!r} and {b[:8]!r}" for name, a, b in finding.differences)
+    what = " and ".join(HASHES[name] for name, _, _ in finding.differences)
+    others = f"; so do those of {counted(finding.others, 'other pair')}" if finding.others else ""
+    return (
+        f"{one} and {two} are no pair in scene {finding.scene!r} (seed {finding.seed}): their "
+        f"{what} differ ({hashes}){others}."
+    )
 
 
 def _recheck(finding: Recheck) -> str:

@@ -1,12 +1,11 @@
 """Blocks of scenes that a check, a trace or a replay runs and records, and what came of them."""
 
-import copy
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 
@@ -15,24 +14,23 @@ from faultpath.core.errors import UserError
 from faultpath.loop import (
     FaultedElsewhere,
     IllegalRead,
-    Loop,
     MalformedReading,
     NotDelivered,
     NotFinite,
-    Query,
     TapCount,
     UndeclaredReader,
 )
 from faultpath.run.attempt import Done, Raised, attempt
 from faultpath.run.check.reads import Enough, Read, ReadLog
-from faultpath.run.check.recording import Recording, signals
+from faultpath.run.check.recording import Recording, signals, with_plant
+from faultpath.run.check.results import Delivery, Difference
 from faultpath.run.execution.dispatch import Built, UndeclaredFile, dispatch
+from faultpath.run.execution.recheck import deviation
 from faultpath.run.pairing import unlike
 from faultpath.run.plan import Treatment
-from faultpath.run.store.signals import DRAWN, Signal
+from faultpath.run.store.signals import Signal
 from faultpath.run.work.executor import Executor, Failed, Lost
-from faultpath.system.episodes import EpisodePlant
-from faultpath.system.loop_system import LoopSystem
+from faultpath.system.declared import Variant
 from faultpath.system.outcome import Outcome
 from faultpath.system.system import System
 
@@ -44,8 +42,8 @@ MISTAKES: dict[str, tuple[type[Exception], ...]] = {
 }
 """Errors by the check that reports them; any other error keeps trials from their end."""
 TRIALS = "trials end"
-Delivery: TypeAlias = tuple[str, int, str, str]
-"""Scene, control step, channel and reader."""
+UNDER = "under the fault: "
+"""Begins why a variant was run under the user's fault; its condition follows."""
 
 
 @dataclass(frozen=True)
@@ -149,7 +147,7 @@ def run_block(system: System, block: BlockSpec) -> RecordedBlock:
         recording, log, result = Recording(), ReadLog(scenes, block.steps), None
         if block.signals:
             result = attempt(
-                _with_plant(system, recording), block.treatment, scenes, observer=recording
+                with_plant(system, recording), block.treatment, scenes, observer=recording
             )
         else:
             with suppress(Enough):
@@ -222,32 +220,59 @@ def gap_of(first: RecordedBlock, again: RecordedBlock) -> float:
     return max(gaps, default=0.0)
 
 
-def _with_plant(system: System, recording: Recording) -> System:
-    """Return a system whose plant, where it has one, is recorded too."""
-    if not isinstance(system, LoopSystem):
-        return system
-    inner = system.loop
+@dataclass
+class Seen:
+    """The runs of a check."""
 
-    def recorded(variant: str, seed: int | None) -> Loop:
-        loop = inner(variant, seed)
-        plant = copy.copy(loop.graph.plant)
-        sense, steps = plant.sense, iter(range(plant.steps + 1))
+    system: System
+    variants: tuple[Variant, ...]
+    scenes: tuple[str, ...]
+    seed: int
+    apart: bool
+    """Whether runs were repeated in processes of their own."""
+    runs: dict[tuple[str, str, tuple[str, str]], RecordedBlock] = field(
+        default_factory=dict[tuple[str, str, tuple[str, str]], RecordedBlock]
+    )
+    """By variant, why it was run, and the tap that was faulted alone."""
 
-        def sensed(state: Any) -> Mapping[str, Any]:
-            outputs, step = sense(state), next(steps)
-            drawn = plant.drawn(state) if isinstance(plant, EpisodePlant) else None
-            if drawn is not None:
-                recording.sources.setdefault(DRAWN, {})[step] = drawn.reshape(len(drawn), -1)
-            for name, value in outputs.items():
-                # What a plant shows to estimators alone is named after the plant.
-                shown = plant.name if isinstance(value, Mapping) else name
-                if not isinstance(value, Query):
-                    recording.source(shown, value, step)
-            return outputs
+    def of(self, variant: str, why: str, tap: tuple[str, str] = ("", "")) -> RecordedBlock:
+        """Return what was recorded of a run; nothing where there was none."""
+        return self.runs.get((variant, why, tap), RecordedBlock())
 
-        vars(plant)["sense"] = sensed
-        return replace(loop, graph=replace(loop.graph, plant=plant))
+    def firsts(self) -> Iterator[tuple[str, RecordedBlock]]:
+        """Yield the first run, under correct inputs, of each variant that came to its end."""
+        for variant in self.variants:
+            run = self.of(variant.name, "first")
+            if run.outcomes:
+                yield variant.name, run
 
-    system = copy.copy(system)
-    vars(system)["loop"] = recorded
-    return system
+    def under(self) -> Iterator[tuple[str, str, RecordedBlock]]:
+        """Yield the runs under the user's fault, each with its variant and condition."""
+        for (variant, why, _), run in self.runs.items():
+            if why.startswith(UNDER):
+                yield variant, condition_of(why), run
+
+    def unsteady(self) -> list[str]:
+        """Return the variants of which a second run differs from the first."""
+        return [variant for variant, _ in self.firsts() if self.difference(variant, "again")]
+
+    def difference(self, variant: str, why: str, base: str = "first") -> Difference | None:
+        """Return how a run of a variant differs from its first one; `None` where it does not."""
+        first, again = self.of(variant, base), self.of(variant, why)
+        if error := again.error or first.error:
+            return Difference(error=error)
+        if not again.outcomes:
+            return None
+        odd = [key for key, digest in again.clean.items() if first.clean.get(key) != digest]
+        by_scene = {outcome.scene: outcome for outcome in first.outcomes}
+        before = [by_scene[outcome.scene] for outcome in again.outcomes]
+        outcomes = deviation(before, Done(again.outcomes, ()))
+        if outcomes is None and not odd:
+            return None
+        reading = min(odd, key=lambda key: key[1], default=None)
+        return Difference(outcomes=outcomes, reading=reading)
+
+
+def condition_of(why: str) -> str:
+    """Return the condition of the user's fault under which a variant was run; empty without it."""
+    return why.removeprefix(UNDER) if why.startswith(UNDER) else ""

@@ -4,18 +4,18 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from hashlib import sha256
 from itertools import pairwise
-from typing import Literal
+from typing import Generic, Literal, TypeVar
 
 from faultpath.core.errors import UserError
 from faultpath.core.results import Result
 from faultpath.core.text import unknown
 from faultpath.faults import AnyIntervention, Erase, Fault, Offset, Scale, resolve
 from faultpath.faults import Sequence as InTurn
-from faultpath.run.check.blocks import BlockSpec, RecordedBlock, coarsest, run_blocks
+from faultpath.run.check.blocks import UNDER, BlockSpec, RecordedBlock, Seen, coarsest, run_blocks
 from faultpath.run.check.delivery import HELD, MOVED, reader_at, unanswered
 from faultpath.run.check.judging import judged
 from faultpath.run.check.reads import Read
-from faultpath.run.check.seen import UNDER, Check, Seen
+from faultpath.run.check.results import Checked
 from faultpath.run.execution.dispatch import Built
 from faultpath.run.plan import SystemSpec, Treatment
 from faultpath.run.question import CheckQuestion
@@ -30,9 +30,11 @@ first two, or one for each part of the user's own: a system lists those that run
 _AFTER = 20
 """Control steps for which a tap is faulted."""
 
+_Told = TypeVar("_Told")
 
-class Report(Result):
-    """A check of a system; what `faultpath check --json` prints."""
+
+class SystemCheck(Result, Generic[_Told]):
+    """A check of a system, whose parts are data or words."""
 
     format: Literal[2] = 2
     system: str
@@ -44,12 +46,7 @@ class Report(Result):
     """Number of scenes of the library."""
     seed: int
     fault: str | None = None
-    checks: tuple[Check, ...]
-
-    @property
-    def failures(self) -> tuple[str, ...]:
-        """The sentences of all checks that failed."""
-        return tuple(sentence for check in self.checks for sentence in check.failures)
+    checks: tuple[_Told, ...]
 
 
 def run_checks(
@@ -58,7 +55,7 @@ def run_checks(
     question: CheckQuestion,
     note: Callable[[int, int | None], None],
     conditions: Mapping[str, Mapping[str, Sequence[Fault]]],
-) -> Report:
+) -> SystemCheck[Checked]:
     """Check a system: what it promises, what it reads, and that faults reach it.
 
     `note` is called with the runs done, and of how many once that is known. `conditions` are those
@@ -99,14 +96,14 @@ def run_checks(
     for where, faults in conditions.items():
         for name in (name for name, _ in seen.firsts() if faults[name]):
             treatment = Treatment(variant=name, faults=tuple(faults[name]), seed=seen.seed)
-            again.append(BlockSpec(treatment, scenes, f"{UNDER} ({where})"))
+            again.append(BlockSpec(treatment, scenes, f"{UNDER}{where}"))
     run(again)
     if doubts := list(_doubts(seen)):
         run(doubts)
     for name in seen.unsteady() if seen.apart else ():
         for whys in (("alone",), ("anew", "repeated")):
             run([BlockSpec(_treatment(seen, name, {}), scenes, why) for why in whys], workers=1)
-    return Report(
+    return SystemCheck[Checked](
         system=spec.name,
         options=spec.options,
         variants=tuple(variant.name for variant in variants),
@@ -150,7 +147,7 @@ def _doubts(seen: Seen) -> Iterator[BlockSpec]:
     constants, first alone, and then while all that others read is faulted."""
     for variant, first in seen.firsts():
         floats = _floats(first)
-        if floats and seen.differs(variant, "part") and not seen.differs(variant, "again"):
+        if floats and seen.difference(variant, "part") and not seen.difference(variant, "again"):
             nudged = dict.fromkeys(floats, Scale(factor=1.0 + 4.0 * coarsest(first)))
             yield BlockSpec(_treatment(seen, variant, nudged), seen.scenes, "rounded")
     silent = ((name, *reader_at(seen, name, tap)) for name, tap in unanswered(seen))

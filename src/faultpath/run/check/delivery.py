@@ -4,12 +4,11 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from faultpath.core.text import listed
 from faultpath.interface import module_of
 from faultpath.loop import Plant
 from faultpath.run.attempt import Done
-from faultpath.run.check.blocks import RecordedBlock
-from faultpath.run.check.seen import Check, Seen
+from faultpath.run.check.blocks import RecordedBlock, Seen
+from faultpath.run.check.results import Checked, Faulted, NothingChanged, Problem, Tap, TapFault
 from faultpath.run.execution.recheck import deviation
 from faultpath.system.loop_system import LoopSystem
 
@@ -17,9 +16,7 @@ HELD, MOVED = "held", "moved"
 """Runs in which a reader is handed constants: alone, and while all other readings are faulted."""
 
 
-def reader_at(
-    seen: Seen, variant: str, tap: tuple[str, str]
-) -> tuple[frozenset[tuple[str, str]], frozenset[str]]:
+def reader_at(seen: Seen, variant: str, tap: Tap) -> tuple[frozenset[Tap], frozenset[str]]:
     """Return all taps of the module that reads at a tap, and what it writes of these readings."""
     system, module = seen.system, module_of(tap[1])
     for part in system.loop(variant, None).graph.parts if isinstance(system, LoopSystem) else ():
@@ -32,7 +29,7 @@ def reader_at(
     return taps, frozenset(system.interface.reconstructs.get(module, ()))
 
 
-def unanswered(seen: Seen) -> Iterator[tuple[str, tuple[str, str]]]:
+def unanswered(seen: Seen) -> Iterator[tuple[str, Tap]]:
     """Yield each variant and tap where a fault altered readings and nothing else."""
     for (variant, why, tap), run in seen.runs.items():
         if why != "tap" or run.error or not any(r.altered for r in run.reads if r.tap == tap):
@@ -47,81 +44,62 @@ def unanswered(seen: Seen) -> Iterator[tuple[str, tuple[str, str]]]:
             yield variant, tap
 
 
-def delivery(name: str, seen: Seen) -> Check:
+def delivery(name: str, seen: Seen) -> Checked:
     """Check that a fault at a tap alters what its reader gets, and that the reader uses it."""
-    failures, remarks = list[str](), list[str]()
+    failures, remarks = list[Problem](), list[Problem]()
     altered, elsewhere = 0, 0
     alone = {key: run for key, run in seen.runs.items() if key[1] == "tap"}
     silent = set(unanswered(seen))
     for (variant, _, tap), run in alone.items():
-        lead = f"Injection point {tap[0]} -> {tap[1]} of variant '{variant}', faulted in "
-        lead += f"{len(seen.scenes)} trials,"
+        fault = variant, tap, len(seen.scenes)
         here = [read for read in run.reads if read.tap == tap]
         count = sum(read.altered for read in here)
         altered += count
         others = [read for read in run.reads if read.tap != tap and read.altered]
         elsewhere += sum(read.altered for read in others)
-        for channel, reader in dict.fromkeys(read.tap for read in others):
-            failures.append(
-                f"{lead} altered a reading at {channel} -> {reader} too, which "
-                "the fault does not name; trust no result of this version of faultpath, and report "
-                "it."
-            )
+        failures += [
+            TapFault(*fault, "alters another tap", other=other)
+            for other in dict.fromkeys(read.tap for read in others)
+        ]
         if run.fails == name:
-            failures.append(f"{lead} is not reached: {run.error}.")
+            failures.append(TapFault(*fault, "not delivered", run.error))
         elif not here:
-            failures.append(
-                f"{lead} delivered nothing, though it did without the fault; deliver at every "
-                "step that reads, and keep nothing from one call of run() to the next."
-            )
+            failures.append(TapFault(*fault, "not delivered"))
         elif not count:
-            failures.append(
-                f"{lead} altered none of its readings; let the source hold numbers that a fault "
-                "can change."
-            )
+            failures.append(TapFault(*fault, "alters nothing"))
         elif (variant, tap) in silent:
-            passed, why = _effect(seen, variant, tap)
-            (failures if passed else remarks).append(f"{lead} {why}")
-    for label, run in seen.under():
-        if run.outcomes and not any(outcome.altered_steps for outcome in run.outcomes):
-            remarks.append(f"{label}: it changed no reading, so an audit would test nothing there.")
-    says = f"{len(alone)} injection points, each faulted alone: {altered} readings altered, "
-    says += f"{elsewhere} elsewhere" if elsewhere else "none elsewhere"
-    return Check(name=name, says=says, failures=tuple(failures), remarks=tuple(remarks))
+            problem = _without_effect(seen, variant, tap)
+            (failures if problem.wrong == "reads elsewhere" else remarks).append(problem)
+    remarks += [
+        NothingChanged(variant, condition)
+        for variant, condition, run in seen.under()
+        if run.outcomes and not any(outcome.altered_steps for outcome in run.outcomes)
+    ]
+    summary = Faulted(len(alone), altered, elsewhere)
+    return Checked(name, summary, tuple(failures), tuple(remarks))
 
 
-def _effect(seen: Seen, variant: str, tap: tuple[str, str]) -> tuple[bool, str]:
-    """Return whether the reader at a tap has its values from elsewhere, and why a fault there had
-    no effect. It has where it was handed the same in two runs and wrote something else."""
+def _without_effect(seen: Seen, variant: str, tap: Tap) -> TapFault:
+    """Return why a fault at a tap had no effect: its reader has its values from elsewhere where it
+    was handed the same in two runs and wrote something else."""
+    fault = variant, tap, len(seen.scenes)
     taps, writes = reader_at(seen, variant, tap)
     reads = seen.of(variant, "first").reads
     sources = {read.tap: read.source for read in reads}
-    output = writes.intersection(sources.values())
-    if not output:
-        return False, (
-            "changed nothing else, in no outcome and at no other injection point, in the steps "
-            "that were looked at; its module may use it later, or not at all, or may use something "
-            "else than it was handed: a check can tell where the module writes a source."
-        )
-    module = module_of(tap[1])
+    outputs = writes.intersection(sources.values())
+    if not outputs:
+        return TapFault(*fault, "no effect")
     runs = [seen.of(variant, why, min(taps)) for why in (HELD, MOVED)]
     queried = {read.source for read in reads if read.asks}  # an answer depends on the request too
     handed = {scene: step for step, scene, at in _unlike(runs, "got")[::-1] if at in taps}
     for step, scene, at in _unlike(runs, "clean"):
-        if sources[at] in output - queried and step < handed.get(scene, math.inf):
-            return True, (
-                f"had no effect, and '{module}' wrote another {sources[at]} at step {step} in "
-                f"scene {scene!r} where all that it was handed was the same: it takes a value from "
-                "elsewhere, past its injection points. Let it use what it is handed."
-            )
-    return False, (
-        f"had no effect because the output of '{module}' never changed in any trial: "
-        f"{listed(output)} stayed what it is without the fault. Look whether it uses this reading, "
-        "and choose scenes in which that matters."
-    )
+        if sources[at] in outputs - queried and step < handed.get(scene, math.inf):
+            changed = (sources[at],)
+            return TapFault(*fault, "reads elsewhere", outputs=changed, step=step, scene=scene)
+    return TapFault(*fault, "no effect", outputs=tuple(sorted(outputs)))
 
 
-def _unlike(runs: Sequence[RecordedBlock], what: str) -> list[tuple[int, str, tuple[str, str]]]:
+def _unlike(runs: Sequence[RecordedBlock], what: str) -> list[tuple[int, str, Tap]]:
     """Return step, scene and tap of what differs in two runs, as long as all their scenes ran."""
     ends = (outcome.steps(run.dt_s) for run in runs for outcome in run.outcomes)
     last = min(ends, default=0) if all(run.outcomes for run in runs) else 0

@@ -5,9 +5,10 @@ what it senses. Signals are small arrays of numbers: what a source held, what a 
 a fault changed it, by how much, and when a fault was in force.
 """
 
+import copy
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pkgutil import resolve_name
 from typing import Any, TypeAlias, cast
 
@@ -19,10 +20,12 @@ from faultpath.core.arrays import is_array, to_numpy
 from faultpath.core.error_source import described
 from faultpath.core.errors import SystemMistake
 from faultpath.interface import Provenance
-from faultpath.loop import DeliveryListener, Query, Reading, Tap
+from faultpath.loop import DeliveryListener, Loop, Query, Reading, Tap
 from faultpath.run.attempt import Done
-from faultpath.run.store.signals import IN_FORCE, TOGETHER, Signal
+from faultpath.run.store.signals import DRAWN, IN_FORCE, TOGETHER, Signal
 from faultpath.system.composed import ComposedSystem
+from faultpath.system.episodes import EpisodePlant
+from faultpath.system.loop_system import LoopSystem
 from faultpath.system.system import System, TrialReadings
 
 Values: TypeAlias = NDArray[np.float64]
@@ -203,3 +206,34 @@ def added(topic: str, unit: str, terms: Mapping[str, Values]) -> tuple[Signal, .
         Signal(name, topic, unit, np.asarray(values, np.float32).reshape(len(together), 1))
         for name, values in {**terms, TOGETHER: together}.items()
     )
+
+
+def with_plant(system: System, recording: Recording) -> System:
+    """Return a system whose plant, where it has one, is recorded too."""
+    if not isinstance(system, LoopSystem):
+        return system
+    inner = system.loop
+
+    def recorded(variant: str, seed: int | None) -> Loop:
+        loop = inner(variant, seed)
+        plant = copy.copy(loop.graph.plant)
+        sense, steps = plant.sense, iter(range(plant.steps + 1))
+
+        def sensed(state: Any) -> Mapping[str, Any]:
+            outputs, step = sense(state), next(steps)
+            drawn = plant.drawn(state) if isinstance(plant, EpisodePlant) else None
+            if drawn is not None:
+                recording.sources.setdefault(DRAWN, {})[step] = drawn.reshape(len(drawn), -1)
+            for name, value in outputs.items():
+                # What a plant shows to estimators alone is named after the plant.
+                shown = plant.name if isinstance(value, Mapping) else name
+                if not isinstance(value, Query):
+                    recording.source(shown, value, step)
+            return outputs
+
+        vars(plant)["sense"] = sensed
+        return replace(loop, graph=replace(loop.graph, plant=plant))
+
+    system = copy.copy(system)
+    vars(system)["loop"] = recorded
+    return system

@@ -1,7 +1,8 @@
 """Trace of who read what, when, in the first steps of a run, and where that is not as declared."""
 
 from collections.abc import Sequence
-from typing import Literal
+from dataclasses import dataclass
+from typing import Generic, Literal, TypeAlias, TypeVar
 
 from faultpath.core.errors import UserError
 from faultpath.core.results import Result
@@ -16,6 +17,8 @@ from faultpath.run.question import TraceQuestion
 from faultpath.system.checks import library_of
 from faultpath.system.loop_system import LoopSystem
 from faultpath.system.system import System
+
+_Told = TypeVar("_Told")
 
 
 class TracedRead(Result):
@@ -33,8 +36,44 @@ class TracedRead(Result):
     """Faults at the tap, where what was delivered differs from the reading."""
 
 
-class TraceReport(Result):
-    """A trace of a variant; what `faultpath trace --json` prints."""
+@dataclass(frozen=True)
+class NeverRead:
+    """A reader that a variant declares, and that did not read in the steps of a trace."""
+
+    variant: str
+    channel: str
+    reader: str
+    steps: int
+
+
+@dataclass(frozen=True)
+class EndedEarly:
+    """An error that ended a run before the steps of its trace."""
+
+    error: str
+
+
+@dataclass(frozen=True)
+class PermittedRead:
+    """A read of a privileged source, by permission of the variant."""
+
+    reader: str
+    source: str
+
+
+@dataclass(frozen=True)
+class TruthRead:
+    """A module that takes a truth of the plant past all taps."""
+
+    module: str
+    truth: str
+
+
+TraceFinding: TypeAlias = NeverRead | EndedEarly | PermittedRead | TruthRead
+
+
+class Trace(Result, Generic[_Told]):
+    """A trace of a variant, whose findings are data or words."""
 
     format: Literal[1] = 1
     system: str
@@ -49,13 +88,13 @@ class TraceReport(Result):
     """In the order in which they happened."""
     reconstructed: dict[str, tuple[str, tuple[str, ...]]]
     """Source to the module that reconstructs it and the channels that this one read."""
-    privileged: tuple[str, ...] = ()
+    privileged: tuple[_Told, ...] = ()
     """Reads of what deployment does not have, by permission of the variant or past all taps."""
-    findings: tuple[str, ...] = ()
-    """Differences from what is declared, a sentence each."""
+    findings: tuple[_Told, ...] = ()
+    """Differences from what is declared."""
 
 
-def trace_system(system: System, spec: SystemSpec, question: TraceQuestion) -> TraceReport:
+def trace_system(system: System, spec: SystemSpec, question: TraceQuestion) -> Trace[TraceFinding]:
     """Run a variant for a few steps and report what was read.
 
     Raises `UserError` for a variant, library or scene that there is not, a fault that
@@ -75,21 +114,20 @@ def trace_system(system: System, spec: SystemSpec, question: TraceQuestion) -> T
     if run.error and not run.reads:
         raise UserError(f"variant '{variant}' does not run: {run.error}")
     taps = {read.tap for read in run.reads}
-    findings = tuple(
-        f"Variant '{variant}' declares that {reader} reads '{channel.name}', but in the first "
-        f"{steps} steps it did not; trace more --steps, or take it out of the variant's readers."
+    findings: tuple[TraceFinding, ...] = tuple(
+        NeverRead(variant, channel.name, reader, steps)
         for channel in system.interface.channels
         for reader in channel.readers
         if reader in readers and (channel.name, reader) not in taps
     )
     if run.error:
-        findings = (f"The run ended early: {run.error}.",)
+        findings = (EndedEarly(run.error),)
     words = {
         (fault.channel, reader): fault.intervention.words()
         for fault in faults
         for reader in fault.readers
     }
-    return TraceReport(
+    return Trace[TraceFinding](
         system=spec.name,
         options=spec.options,
         variant=variant,
@@ -129,19 +167,12 @@ def _reconstructed(system: System, reads: Sequence[Read]) -> dict[str, tuple[str
     }
 
 
-def _privileged(system: System, variant: str, reads: Sequence[Read]) -> tuple[str, ...]:
-    """Return a sentence on each read of what deployment does not have."""
+def _privileged(system: System, variant: str, reads: Sequence[Read]) -> tuple[TraceFinding, ...]:
+    """Return each read of what deployment does not have."""
     permitted = system.variants[variant].privileged
     by_permission = {read.reader: read.source for read in reads if read.source in permitted}
     modules = system.modules(variant, None) if isinstance(system, LoopSystem) else ()
     return (
-        *(
-            f"{reader} reads '{source}', which is privileged, by permission of the variant."
-            for reader, source in by_permission.items()
-        ),
-        *(
-            f"Module '{module.name}' takes the plant's truth '{truth}' past all taps."
-            for module in modules
-            for truth in sorted(module.truths)
-        ),
+        *(PermittedRead(reader, source) for reader, source in by_permission.items()),
+        *(TruthRead(module.name, truth) for module in modules for truth in sorted(module.truths)),
     )

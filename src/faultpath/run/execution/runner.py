@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
+from faultpath.core import __version__
 from faultpath.core.errors import Stopped, UserError
-from faultpath.core.version import __version__
 from faultpath.run.attempt import Reply, attempt
 from faultpath.run.code import Code, named
 from faultpath.run.deliveries import Deliveries

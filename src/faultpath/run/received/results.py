@@ -21,8 +21,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.parquet import Unreadable, read_rows
 from faultpath.core.files.plain import Misread, read_json, text_of
-from faultpath.core.numbers import number_of
-from faultpath.core.text import unknown
+from faultpath.core.text import number_of, unknown
 from faultpath.core.validation_messages import misfit_of
 from faultpath.run.received.formats import (
     LARGEST_LOG,

@@ -21,8 +21,8 @@ from typing import Any
 
 import ray
 
+from faultpath.core import __version__
 from faultpath.core.errors import Notice, UserError
-from faultpath.core.version import __version__
 from faultpath.run.work.executor import (
     ONE_THREAD,
     Call,

@@ -16,7 +16,7 @@ from typing import Any
 
 import ray
 
-from faultpath.core.version import __version__
+from faultpath.core import __version__
 from faultpath.run.work.executor import live_on
 from faultpath.run.work.processes import served, show
 

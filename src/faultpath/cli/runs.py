@@ -1,4 +1,4 @@
-"""`faultpath audit`, `judge` and `report`: audits, and what follows."""
+"""`faultpath demo`, `audit`, `judge`, `map`, `scan` and `report`: verbs of run folders."""
 
 import hashlib
 import json
@@ -10,15 +10,18 @@ import typer
 
 from faultpath.cli.flags import takes
 from faultpath.cli.gates import FailIf, Gate, Junit, Summary
-from faultpath.cli.options import Json, SystemName, display
+from faultpath.cli.options import FOUND, Json, SystemName, display
 from faultpath.cli.options import path as as_path
 from faultpath.core.errors import UserError
 from faultpath.core.text import one_line
-from faultpath.run.question import AuditCall
+from faultpath.run.question import AuditCall, MapCall, ScanCall
 from faultpath.run.received.question import JudgeQuestion
 
 if TYPE_CHECKING:
-    from faultpath.api.runs import Run
+    from rich.console import Console
+
+    from faultpath.api.runs import MapRun, Run, ScanRun
+    from faultpath.report.tables import Table
 
 Details = Annotated[
     bool,
@@ -26,6 +29,39 @@ Details = Annotated[
         "--details", help="Print every sentence of the result too, and what would change it."
     ),
 ]
+
+_TOY = "toy.py"
+_STORY = (
+    "A cart: its controller and its observer read one estimate of the motor's gain. The fault: the "
+    "estimate is 0.6 times the true gain. In `calibrated` the observer uses it, in `blind` the "
+    "number on the nameplate.\n"
+)
+
+
+def demo(
+    out: Annotated[
+        Path | None,
+        typer.Option(parser=as_path, help="Run folder; default one in runs, so it resumes."),
+    ] = None,
+) -> int:
+    """Audit the toy that ships with faultpath: a cart whose controller and observer share one wrong
+    gain, and a repair that wins where only the observer gets it."""
+    import faultpath.system
+    from faultpath.api.audit import audit
+    from faultpath.api.display import SafeConsole
+    from faultpath.report.terminal import decision
+
+    toy = Path(faultpath.system.__file__).with_name(_TOY)
+    if not toy.is_file():  # in a checkout, which a wheel takes it from
+        toy = Path(__file__).resolve().parents[3] / "examples" / _TOY
+    console = SafeConsole()
+    console.print(_STORY, markup=False)
+    variants = {"baseline": "calibrated", "repair": "blind", "fault": "gain:scale=0.6"}
+    run = audit(f"{toy}:create", **variants, library="carts", folder=out, progress=display())
+    console.print(decision(run.record))
+    _print_place(console, run)
+    console.print(f"The system: {toy}. Next, one of your own: faultpath init mine", markup=False)
+    return FOUND if run.failed else 0
 
 
 @takes(AuditCall)
@@ -91,6 +127,40 @@ def judge(
     gate = Gate.of(fail_if, junit, summary)
     run = judge(results, **arguments, progress=display(as_json))
     return _print((run,), as_json, gate, True, details)
+
+
+@takes(MapCall)
+def reversal_map(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
+    """Map the success difference over the error at one module and that at another: where repair
+    or baseline is ahead, from which correlation of the errors on, and which error reverses that."""
+    from faultpath.api.rounds import map
+    from faultpath.report.map import tables
+
+    run = map(system, **arguments, progress=display(as_json))
+    return _print_conclusion(run, tables(run.record), as_json)
+
+
+@takes(ScanCall)
+def scan(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
+    """Find which errors of a system's inputs cancel: each alone costs success, and both together
+    less than either, so that correcting one of them alone does not help."""
+    from faultpath.analyses.scan.sources import Ranking
+    from faultpath.api.display import SafeConsole
+    from faultpath.api.rounds import scan
+    from faultpath.report.scan import ranking_table, tables
+    from faultpath.report.terminal import Parted
+
+    run = scan(system, **arguments, progress=display(as_json))
+    if isinstance(run, Ranking):
+        if as_json:
+            typer.echo(run.model_dump_json(indent=1))
+            return 0
+        table, console = ranking_table(run), SafeConsole()
+        console.print(Parted(table))
+        for note in table.notes:
+            console.print(note, markup=False)
+        return 0
+    return _print_conclusion(run, tables(run.record), as_json)
 
 
 def report(
@@ -159,5 +229,26 @@ def _print(
         if len(runs) > 1:
             console.print(f"\nFault {run.record.question.fault}", markup=False)
         console.print(decision(run.record, details))
-        console.print(f"Report: {run.folder / 'report.html'}", markup=False, soft_wrap=True)
+        _print_place(console, run)
     return gate.end(runs, console.print)
+
+
+def _print_conclusion(run: "MapRun | ScanRun", tables: "Sequence[Table]", as_json: bool) -> int:
+    """Print what a map or a scan found, or that as JSON; return the exit status."""
+    from faultpath.api.comparing import in_json
+    from faultpath.api.display import SafeConsole
+    from faultpath.report.terminal import conclusion
+
+    if as_json:
+        typer.echo(json.dumps(in_json(run.folder, run.record), indent=1))
+    else:
+        console = SafeConsole()
+        console.print(conclusion(run.record, tables))
+        for command in run.words.commands or ():
+            console.print(f"Next: {command}", markup=False, soft_wrap=True)
+        _print_place(console, run)
+    return FOUND if run.record.failed else 0
+
+
+def _print_place(console: "Console", run: "Run | MapRun | ScanRun") -> None:
+    console.print(f"Report: {run.folder / 'report.html'}", markup=False, soft_wrap=True)
