@@ -85,28 +85,26 @@ def bare_trials() -> Side:
 
 def _audited() -> list[list[float]]:
     """Audit the arm, and return how far from its goal it ended, by treatment and scene."""
-    outcomes = _in_folder(
-        lambda folder: faultpath.audit(
-            ROOT / "benchmarks" / "two_link.py",
-            baseline="calibrated",
-            repair="nominal",
-            fault=f"payload:scale={FACTOR}",
-            scenes=SCENES,
-            workers=0,
-            folder=folder / "run",
-            progress=False,
-        )
+    outcomes = _run(
+        faultpath.audit,
+        ROOT / "benchmarks" / "two_link.py",
+        baseline="calibrated",
+        repair="nominal",
+        fault=f"payload:scale={FACTOR}",
+        scenes=SCENES,
+        workers=0,
     )
     missed: Any = read_table(outcomes).column("missed_rad")
     treatments = missed.to_numpy().reshape(-1, SCENES)
     return np.unique(treatments.round(9), axis=0).tolist()
 
 
-def _in_folder(run: Callable[[Path], object]) -> bytes:
-    """Do what writes a run into a new folder, and return the table of its outcomes."""
+def _run(call: Callable[..., object], place: Path, **question: Any) -> bytes:
+    """Write a run into a new folder, and return the table of its outcomes."""
     with TemporaryDirectory() as name:
-        run(Path(name))
-        return (Path(name) / "run" / "outcomes.parquet").read_bytes()
+        folder = Path(name) / "run"
+        call(place, folder=folder, progress=False, **question)
+        return (folder / "outcomes.parquet").read_bytes()
 
 
 def judged(scenes: int = JUDGED) -> Side:
@@ -123,16 +121,8 @@ def judged(scenes: int = JUDGED) -> Side:
                 rows.writerows((variant, condition, i, int(end)) for i, end in enumerate(ends))
 
     def work() -> None:
-        _in_folder(
-            lambda new: faultpath.judge(
-                Path(folder.name) / "results.csv",
-                baseline="baseline",
-                repair="repair",
-                nominal=CORRECT,
-                folder=new / "run",
-                progress=False,
-            )
-        )
+        file = Path(folder.name) / "results.csv"
+        _run(faultpath.judge, file, baseline="baseline", repair="repair", nominal=CORRECT)
 
     return Side(work)
 
@@ -151,18 +141,10 @@ def many_scenes() -> Side:
     system = Path(folder.name) / "toy.py"
     system.write_text(text.replace(_LIBRARY, _LIBRARY.replace("100", str(AUDITED))), "utf-8")
 
+    question = {"baseline": "calibrated", "repair": "blind", "fault": "gain:scale=0.6"}
+
     def work() -> None:
-        _in_folder(
-            lambda new: faultpath.audit(
-                Path(folder.name) / "toy.py",
-                baseline="calibrated",
-                repair="blind",
-                fault="gain:scale=0.6",
-                library="carts",
-                workers=0,
-                folder=new / "run",
-                progress=False,
-            )
-        )
+        file = Path(folder.name) / "toy.py"
+        _run(faultpath.audit, file, library="carts", workers=0, **question)
 
     return Side(work)

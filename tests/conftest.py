@@ -57,8 +57,8 @@ def elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture
 def fuzz_seed(request: pytest.FixtureRequest) -> int:
     """The seed of what a fuzz test tries; a failing test names it."""
-    given = request.config.getoption("--fuzz-seed")
-    return secrets.randbelow(10**9) if given == "random" else int(given)
+    seed = request.config.getoption("--fuzz-seed")
+    return secrets.randbelow(10**9) if seed == "random" else int(seed)
 
 
 @pytest.fixture

@@ -48,10 +48,12 @@ class EngineAlone:
             return
         for item in items:
             case = getattr(item, "callspec", None)
-            said = inspect.getsource(getattr(item, "function", type(item)))
-            said = said[said.find("def ") :]  # the cases of others stand above it
-            said += "" if case is None else f"\n{case.id} {list(map(_shown, case.params.values()))}"
-            if QUADROTOR.search(said):
+            source = inspect.getsource(getattr(item, "function", type(item)))
+            source = source[source.find("def ") :]  # the cases of others stand above it
+            source += (
+                "" if case is None else f"\n{case.id} {list(map(_shown, case.params.values()))}"
+            )
+            if QUADROTOR.search(source):
                 item.add_marker(pytest.mark.skip(reason="needs faultpath_quadrotor"))
 
     @pytest.hookimpl(wrapper=True)

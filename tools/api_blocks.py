@@ -3,6 +3,7 @@
 import inspect
 import re
 from importlib import import_module
+from typing import Any
 
 
 def signatures(module: str, *names: str) -> str:
@@ -13,14 +14,14 @@ def signatures(module: str, *names: str) -> str:
     return f"```text\n{lines}\n```"
 
 
-def _line(name: str, thing: object) -> str:
+def _line(name: str, thing: Any) -> str:
     doc = inspect.getdoc(thing) or ""
     first = " ".join(re.split(r"(?<=\.)\s|\n\n", doc, maxsplit=1)[0].split())
     try:
-        taken = inspect.signature(thing)  # pyright: ignore[reportArgumentType]
+        parameters = inspect.signature(thing).parameters.values()
     except (TypeError, ValueError):
         return f"{name}\n    {first}"
-    fields = [field.replace(annotation=field.empty) for field in taken.parameters.values()]
+    fields = [field.replace(annotation=field.empty) for field in parameters]
     if inspect.isclass(thing) and any(field.name.startswith("_") for field in fields):
         fields = []  # only faultpath makes one
     return f"{name}{inspect.Signature(fields)}\n    {first}"

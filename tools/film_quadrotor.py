@@ -136,12 +136,12 @@ def draw_wind(
 
 def draw_quadrotor(film: Film, points: Sequence[Point], times: Sequence[float], side: str) -> None:
     """Draw the vehicle until its flight ends."""
-    flies = [
+    moves = [
         (time, f"translate({number(x)}px,{number(y)}px)")
         for time, (x, y) in zip(times, points, strict=True)
     ]
     until = f"{side} {film.vanishing(times[-1])}"
-    with film.group(until, opacity="0"), film.carried(flies):
+    with film.group(until, opacity="0"), film.carried(moves):
         film.path("M-5.5 -5.5l11 11m0 -11l-11 11", "frame")
         for x, y in product((-6, 6), repeat=2):
             film.circle((x, y), 3.6, "rotor")

@@ -78,7 +78,7 @@ def show(runs: Iterable[Run], foreign: bool = True) -> dict[str, Repeats | None]
     """
     every = tuple(runs)
     states = {run.name: state(run) for run in every}
-    runs = [run for run in every if not states[run.name] or kept(run) != states[run.name]]
+    runs = [run for run in every if not states[run.name] or last_state(run) != states[run.name]]
     code = "import sys, blocks, repeats\nfor n in sys.argv[1:]: repeats.write(blocks.load(n))"
     variables = os.environ | {"PYTHONPATH": os.pathsep.join(map(str, sources(ROOT)))}
     own = [run for run in runs if environment(run) == ".venv"]
@@ -118,7 +118,7 @@ def state(run: Run) -> str:
     return "\n".join([processor(), environment(run), *packages, trees.stdout.decode()])
 
 
-def kept(run: Run) -> str:
+def last_state(run: Run) -> str:
     """Return the state by which a run's sample was repeated last."""
     return (KEPT / run.name).read_text("utf-8") if (KEPT / run.name).is_file() else ""
 

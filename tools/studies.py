@@ -62,9 +62,9 @@ def camera_answer(names: Sequence[str]) -> str:
     studies = {name: camera(name, "held-out") for name in names}
     audits = [audit for study in studies.values() for audit in study["audits"]]
     turned = sum("reversal" in audit["turns"].values() for audit in audits)
-    found = f"A reversal is significant in {turned} of" if turned else "No reversal in"
+    start = f"A reversal is significant in {turned} of" if turned else "No reversal in"
     lines = [
-        f"{found} {counted(len(audits), 'audit')}. With the error in both pictures, compared with "
+        f"{start} {counted(len(audits), 'audit')}. With the error in both pictures, compared with "
         "the live one alone, `plain` succeeds\n"
     ]
     for rooms in ("marked", "blank"):

@@ -96,7 +96,7 @@ def test_what_is_said_is_what_was_approved(name, approved) -> None:
         ((60, 0, 9), LOSS, "with the fault at the observer alone in 9 scenes, never the other way"),
     ],
 )
-def test_a_headline_says_in_how_few_scenes_its_its_effects_show(isolated, shared, scenes):
+def test_a_headline_says_in_how_few_scenes_its_effects_show(isolated, shared, scenes):
     assert words(three((50, 0, 0), isolated, shared)).headline.endswith(f" ({scenes}).")
 
 

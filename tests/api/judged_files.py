@@ -10,11 +10,11 @@ Successes = Mapping[str, Sequence[bool]]
 HEADER = "variant,scene,seed,condition,success,initial\n"
 
 
-def table(path: Path, found: Mapping[str, Successes]) -> Path:
+def table(path: Path, conditions: Mapping[str, Successes]) -> Path:
     """Write the successes of each condition as CSV, with a hash for each scene."""
     lines = [
         f"{variant},s{n},0,{condition},{int(won)},h{n}"
-        for condition, variants in found.items()
+        for condition, variants in conditions.items()
         for variant, each in variants.items()
         for n, won in enumerate(each)
     ]

@@ -1,8 +1,9 @@
-"""The front door: an audit from Python, by name, by file and by object."""
+"""The front door: an audit from Python, by name, by file and by object; and a check."""
 
 import io
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pyarrow as pa
@@ -17,13 +18,14 @@ from faultpath.core.files.parquet import read_table
 from faultpath.report.audit_tables import markdown_table
 from faultpath.report.html import report_page
 from faultpath.report.sentences import words
+from faultpath.report.sentences.answers import answers
 from faultpath.report.terminal import decision
 from faultpath.run.store.folder import OUTCOMES
 from faultpath.run.store.signals import encode_signals
 from faultpath.run.store.tables import encode_outcomes, encode_traces
 
-ASKED = {**AUDIT, "scenes": 12, "signals": False}
-SEQUENTIAL = {**ASKED, "scenes": 60, "stop_when": "decided"}
+QUESTION = {**AUDIT, "scenes": 12, "signals": False}
+SEQUENTIAL = {**QUESTION, "scenes": 60, "stop_when": "decided"}
 
 
 pytestmark = pytest.mark.usefixtures("elsewhere", "without_pages")
@@ -37,20 +39,12 @@ def toy():
 @pytest.fixture(scope="module")
 def run(tmp_path_factory) -> faultpath.Run:
     folder = tmp_path_factory.mktemp("door") / "run"
-    return faultpath.audit(TOY, folder=folder, **ASKED | {"signals": True})
+    return faultpath.audit(TOY, folder=folder, **QUESTION | {"signals": True})
 
 
-def _outcomes(run: faultpath.Run) -> list[tuple]:
-    columns = (
-        "variant",
-        "condition",
-        "seed",
-        "scene",
-        "status",
-        "terminal_distance_m",
-        "faulted_steps",
-    )
-    return list(zip(*(run.table()[name].to_pylist() for name in columns), strict=True))
+def _outcomes(run: faultpath.Run) -> list[dict]:
+    columns = ("variant", "condition", "seed", "scene", "status", "terminal_distance_m")
+    return run.table().select([*columns, "faulted_steps"]).to_pylist()
 
 
 def test_a_run_holds_what_was_decided_and_from_what(run):
@@ -65,11 +59,11 @@ def test_a_run_holds_what_was_decided_and_from_what(run):
     assert "baseline='calibrated'" in called
 
 
-def test_the_rule_is_in_the_record_and_no_verdict_is_redone_by_another(run, tmp_path):
+def test_the_rule_is_in_the_record_and_no_result_is_decided_anew_by_another(run, tmp_path):
     assert "Tests: E+M test and weighted Holm." in markdown_table(run.record)
-    told = io.StringIO()
-    Console(file=told, width=200).print(decision(run.record, details=True))
-    assert "McNemar" in told.getvalue()
+    text = io.StringIO()
+    Console(file=text, width=200).print(decision(run.record, details=True))
+    assert "McNemar" in text.getvalue()
     assert all(effect.mcnemar_p is not None for effect in run.record.effects)
 
 
@@ -102,7 +96,7 @@ def test_a_folder_that_is_none_is_named_and_a_notebook_shows_a_run(run):
 )
 def test_whatever_names_a_system_runs_the_same(way, workers, name, run, toy):
     ways = {"path": FILE, "loaded": faultpath.load_system(str(FILE)), "object": toy}
-    other = faultpath.audit(ways[way], folder="other", **ASKED | {"workers": workers})
+    other = faultpath.audit(ways[way], folder="other", **QUESTION | {"workers": workers})
     assert _outcomes(other) == _outcomes(run)
     assert other.record.effects == run.record.effects
     assert other.record.facts.system == name
@@ -113,15 +107,15 @@ def test_an_object_that_was_changed_is_not_taken_for_what_was_loaded():
     loaded = faultpath.load_system(TOY)
     loaded.block_size = 3
     with pytest.raises(faultpath.UserError, match="an object cannot be sent to worker processes"):
-        faultpath.audit(loaded, **ASKED | {"workers": 2})
+        faultpath.audit(loaded, **QUESTION | {"workers": 2})
 
 
 def test_trials_of_an_object_are_never_taken_for_those_of_another(toy):
-    told = io.StringIO()
-    question = ASKED | {"workers": None}
-    first = faultpath.audit(toy, **question | {"progress": Display(Console(file=told))})
-    assert "The system is an object, so it runs in this process" in told.getvalue()
-    assert "Running: 96 of 96 trials" in told.getvalue()
+    text = io.StringIO()
+    question = QUESTION | {"workers": None}
+    first = faultpath.audit(toy, **question | {"progress": Display(Console(file=text))})
+    assert "The system is an object, so it runs in this process" in text.getvalue()
+    assert "Running: 96 of 96 trials" in text.getvalue()
     second = faultpath.audit(toy, **question)
     assert first.folder != second.folder
     assert second.provenance.blocks_kept == 0
@@ -130,7 +124,7 @@ def test_trials_of_an_object_are_never_taken_for_those_of_another(toy):
 
 
 @pytest.mark.parametrize(
-    ("system", "given", "says"),
+    ("system", "options", "sentence"),
     [
         (3, {}, "a system is a name, a file or a faultpath.System, not 3"),
         ("octopus", {}, "there is no system 'octopus'"),
@@ -149,10 +143,10 @@ def test_trials_of_an_object_are_never_taken_for_those_of_another(toy):
         (TOY, SEQUENTIAL | {"generalise": "models", "seeds": (0, 1)}, "leave --stop-when or"),
     ],
 )
-def test_what_cannot_be_asked_is_told_in_a_sentence(system, given, says, toy, tmp_path):
-    with pytest.raises(faultpath.UserError, match=says) as raised:
-        faultpath.audit(toy if system is None else system, **(ASKED | given))
-    assert "\n" not in str(raised.value)
+def test_what_cannot_be_asked_is_one_sentence(system, options, sentence, toy, tmp_path):
+    with pytest.raises(faultpath.UserError, match=sentence) as refusal:
+        faultpath.audit(toy if system is None else system, **(QUESTION | options))
+    assert "\n" not in str(refusal.value)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -164,7 +158,7 @@ import faultpath, toy
 class Mine(toy.Toy):
     pass
 
-asked = {ASKED!r}
+asked = {QUESTION!r}
 asked |= {{"progress": True, "scenes": 4}}
 named = faultpath.audit({TOY!r}, **asked | {{"workers": 2}})
 mine = faultpath.audit(Mine(), **asked | {{"workers": None}})
@@ -172,7 +166,7 @@ print(named.record.effects == mine.record.effects, mine.provenance.code.system_c
 """
 
 
-def test_what_is_typed_in_flies_and_needs_no_guard(tmp_path):
+def test_what_is_typed_in_runs_and_needs_no_guard(tmp_path):
     """As in a notebook: the class is in no file, and `__main__` has no `if __name__` guard."""
     done = subprocess.run(
         [sys.executable, "-"], input=NOTEBOOK, capture_output=True, text=True, timeout=120
@@ -202,8 +196,8 @@ def test_a_sequential_audit_stops_and_says_so(early):
     assert record.stopped.scenes < 60
     assert record.stopped.scenes % record.facts.order.per_analysis == 0
     assert early.table().num_rows == record.stopped.scenes * 2 * 4
-    flown = set(early.table()["scene"].to_pylist())
-    assert flown == set(record.facts.order.scenes[: record.stopped.scenes])
+    scenes = set(early.table()["scene"].to_pylist())
+    assert scenes == set(record.facts.order.scenes[: record.stopped.scenes])
     assert record.effects[-1].sign == -1  # under the shared fault, for the baseline
     assert "ahead" in words(record).headline
     assert f"{record.stopped.scenes} scenes of at most 60" in " ".join(words(record).sentences)
@@ -219,7 +213,71 @@ def test_a_sequential_audit_resumes_to_the_same_record(early, tmp_path):
 
 
 def test_a_sequential_audit_without_an_end_takes_all(tmp_path):
-    asked = {**SEQUENTIAL, "scenes": 6, "stop_when": "all-decided", "margin_pp": 15}
-    record = faultpath.audit(TOY, folder=tmp_path / "run", **asked).record
+    question = {**SEQUENTIAL, "scenes": 6, "stop_when": "all-decided", "margin_pp": 15}
+    record = faultpath.audit(TOY, folder=tmp_path / "run", **question).record
     assert (record.stopped.scenes, record.stopped.reached) == (6, False)
     assert words(record).headline.startswith("Too few scenes")
+
+
+FIVE_PERCENT = "at most 5 % of audits would report any difference"
+
+
+def extended(**options) -> faultpath.Run:
+    """Run an audit in the folder in which the test ran others before."""
+    return faultpath.audit(TOY, **(QUESTION | {"folder": "run"} | options))
+
+
+def earlier(run: faultpath.Run) -> list[tuple]:
+    """Return what was concluded in the folder before."""
+    return [(analysis.scenes, analysis.primary) for analysis in run.record.earlier]
+
+
+def test_more_scenes_in_the_same_folder_leave_a_trace_that_stays(monkeypatch):
+    def text(run: faultpath.Run) -> str:
+        return " ".join((*run.words.findings, *answers(run.record).values()))
+
+    first = extended(scenes=12)
+    assert extended(scenes=12).record == first.record
+    assert FIVE_PERCENT in text(first)
+    assert not first.record.earlier
+    more = extended(scenes=20, signals=True)
+    assert earlier(more) == [(12, "shared")]
+    assert "concluded before with 12 scenes" in text(more)
+    assert FIVE_PERCENT not in text(more)
+    with monkeypatch.context() as killed:
+        killed.setattr(import_module("faultpath.api.audit"), "seal", lambda *_: 1 / 0)
+        with pytest.raises(ZeroDivisionError):
+            extended(scenes=20, signals=True)
+    assert extended(scenes=20).record == more.record
+    assert earlier(extended(scenes=12)) == [(20, "shared")]
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "conclusions"),
+    [
+        ({"scenes": 12}, {"scenes": 12, "primary": "correct"}, [(12, "shared")]),
+        ({"scenes": 3}, {"scenes": 12}, []),
+    ],
+    ids=["another primary effect", "what could not have been significant"],
+)
+def test_what_was_concluded_before_counts_if_it_could_be_significant(before, after, conclusions):
+    extended(**before)
+    assert earlier(extended(**after)) == conclusions
+
+
+def test_sequential_audits_may_be_extended_as_long_as_they_decide_one_effect():
+    extended(scenes=15, stop_when="decided")
+    assert not earlier(extended(scenes=20, stop_when="all-decided"))
+    other = extended(scenes=20, stop_when="all-decided", primary="correct")
+    assert earlier(other) == [(None, "shared")]
+
+
+def test_a_check_of_an_object_is_that_of_its_name(toy):
+    options = {"library": "carts", "scenes": 2, "workers": 0, "progress": False}
+    report = faultpath.check(FILE, variants=["blind"], **options)
+    assert report.failures == ()
+    assert report.variants == ("blind",)
+    own = faultpath.check(toy, variants=["blind"], **options)
+    assert [check.status for check in own.checks] == [check.status for check in report.checks]
+    with pytest.raises(faultpath.UserError, match="an object cannot be sent to worker processes"):
+        faultpath.check(toy, workers=2)

@@ -28,9 +28,9 @@ def test_few_names_are_public_and_all_are_listed():
     [(package, name) for package in (faultpath, faultpath.api) for name in package.__all__],
 )
 def test_every_name_is_there_and_says_what_it_is(package, name):
-    found = getattr(package, name)
+    thing = getattr(package, name)
     assert name in dir(package)
-    assert name == "__version__" or (found.__doc__ or "").strip()
+    assert name == "__version__" or (thing.__doc__ or "").strip()
 
 
 @pytest.mark.parametrize("function", [faultpath.audit, faultpath.map, faultpath.api.audits])

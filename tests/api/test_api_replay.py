@@ -1,4 +1,4 @@
-"""Trials of a finished run flown again: the same to the bit, heard, and in the report."""
+"""Trials of a finished run, run again: the same to the bit, recorded, and in the report."""
 
 import json
 import shutil
@@ -20,54 +20,54 @@ from faultpath.run.store.tables import TrialAddress
 from faultpath.run.trials import Trials
 
 SCENE = "cart/001"
-ASKED = AUDIT | {"fault": "gain:scale=0.6,onset=20,for=30", "scenes": 3}
+QUESTION = AUDIT | {"fault": "gain:scale=0.6,onset=20,for=30", "scenes": 3}
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory) -> Path:
     place = tmp_path_factory.mktemp("replay") / "run"
-    faultpath.audit(TOY, **ASKED, folder=place, signals=False)
+    faultpath.audit(TOY, **QUESTION, folder=place, signals=False)
     return place
 
 
 @pytest.fixture(scope="module")
-def found(folder):
+def trials(folder):
     return replay(read_run(folder), (SCENE,), trust=True).trials
 
 
-def _signals(found, variant: str, condition: str) -> dict[str, Signal]:
+def _signals(trials, variant: str, condition: str) -> dict[str, Signal]:
     address = TrialAddress(variant, condition, 0, SCENE)
-    return {s.name: s for each in found if each.address == address for s in each.signals}
+    return {s.name: s for each in trials if each.address == address for s in each.signals}
 
 
-def test_a_replay_is_the_run_and_hears_what_the_fault_did(found) -> None:
-    assert len(found) == 8
-    assert not any(each.deviation for each in found)
-    heard = _signals(found, "calibrated", "shared")
-    gain = heard["gain_estimate"].values
+def test_a_replay_is_the_run_and_hears_what_the_fault_did(trials) -> None:
+    assert len(trials) == 8
+    assert not any(each.deviation for each in trials)
+    signals = _signals(trials, "calibrated", "shared")
+    gain = signals["gain_estimate"].values
     assert gain.shape == (100, 1)
     faulted = np.zeros((100, 1))
     faulted[20:50] = 1
-    assert np.array_equal(heard[IN_FORCE].values, faulted)
+    assert np.array_equal(signals[IN_FORCE].values, faulted)
     for tap in ("controller.inverse", "observer.model"):
-        assert np.allclose(heard[f"gain at {tap}"].values, gain * (1 - 0.4 * faulted))
-        assert np.allclose(heard[f"gain error at {tap}"].values, -0.4 * gain * faulted)
-    assert heard["observed_slope"].topic == "slope"
-    assert np.isfinite(heard["observed_slope"].values).all()
-    assert "gain at observer.model" not in _signals(found, "blind", "shared")
-    assert IN_FORCE not in _signals(found, "blind", "correct")
+        assert np.allclose(signals[f"gain at {tap}"].values, gain * (1 - 0.4 * faulted))
+        assert np.allclose(signals[f"gain error at {tap}"].values, -0.4 * gain * faulted)
+    assert signals["observed_slope"].topic == "slope"
+    assert np.isfinite(signals["observed_slope"].values).all()
+    assert "gain at observer.model" not in _signals(trials, "blind", "shared")
+    assert IN_FORCE not in _signals(trials, "blind", "correct")
 
 
-def test_signals_stay_with_the_run_and_a_changed_file_is_refused(folder, found, tmp_path) -> None:
+def test_signals_stay_with_the_run_and_a_changed_file_is_refused(folder, trials, tmp_path) -> None:
     run = tmp_path / "run"
     shutil.copytree(folder, run)
     source = read_run(run)
-    few = [each for each in found if each.address.condition == "shared"]
+    few = [each for each in trials if each.address.condition == "shared"]
     written = keep_signals(run, source, few)
     assert written[0] == run / SIGNALS
     more = read_run(run)
     assert len(more.signals) == 2
-    keep_signals(run, more, found)
+    keep_signals(run, more, trials)
     assert len(read_run(run).signals) == 8
     (run / SIGNALS).write_bytes((run / SIGNALS).read_bytes()[:-1] + b"x")
     with pytest.raises(UserError, match=r"signals.parquet changed since the run"):
@@ -81,10 +81,10 @@ def test_a_trial_that_comes_out_otherwise_is_told_and_not_heard(folder) -> None:
         for row in source.trials
     )
     changed = replace(source, trials=Trials.of(rows))
-    found = replay(changed, (SCENE,), ("shared", "observer"), trust=True).trials
-    differs = {each.address.condition: bool(each.deviation) for each in found}
+    trials = replay(changed, (SCENE,), ("shared", "observer"), trust=True).trials
+    differs = {each.address.condition: bool(each.deviation) for each in trials}
     assert differs == {"shared": True, "observer": False}
-    for each in found:
+    for each in trials:
         assert ("time_s by up to 1" in str(each.deviation)) == bool(each.deviation)
         assert bool(each.signals) != bool(each.deviation)
 
@@ -111,10 +111,10 @@ def test_the_verb_says_whether_a_run_repeats(folder, capsys) -> None:
 def test_the_verb_says_where_versions_and_conditions_part(folder, capsys) -> None:
     one = {"trust": True, "scene": [SCENE], "where": True}
     assert command(folder, **one, condition=["shared"]) == 0
-    said = " ".join(capsys.readouterr().out.split())
+    text = " ".join(capsys.readouterr().out.split())
     begin = f"{SCENE}, seed 0, shared, calibrated and blind: At 0.10 s the slope that the"
-    assert said.count(", seed 0, ") == 3  # two trials that ran again, and the couple
-    assert f"{begin} controller reads is" in said
+    assert text.count(", seed 0, ") == 3  # two trials that ran again, and the couple
+    assert f"{begin} controller reads is" in text
     assert command(folder, **one, condition=["correct", "shared"], as_json=True) == 0
     partings = json.loads(capsys.readouterr().out)
     couples = [[(t["variant"], t["condition"]) for t in of["trials"]] for of in partings]
@@ -132,10 +132,10 @@ def test_the_verb_says_where_versions_and_conditions_part(folder, capsys) -> Non
         command(folder, trust=True, as_json=True)
 
 
-def test_trials_that_came_out_otherwise_are_not_compared(folder, found) -> None:
+def test_trials_that_came_out_otherwise_are_not_compared(folder, trials) -> None:
     source = read_run(folder)
     other = Deviation(scenes=(SCENE,), of=1, gaps=(("time_s", 1.0),))
-    unlike = [replace(found[0], deviation=other), *found[1:]]
+    unlike = [replace(trials[0], deviation=other), *trials[1:]]
     first = unlike[0].address
     left = where_parted(source, unlike, [SCENE])
     assert len(left) == 3

@@ -1,4 +1,4 @@
-"""Comparing finished audits, from Python and from the command line."""
+"""Several audits: of the sizes of a fault, and finished ones side by side."""
 
 import json
 import re
@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from cli_runs import faultpath as command
-from toy_audits import ROOT
+from toy_audits import AUDIT, ROOT, TOY
 
 import faultpath
 from faultpath.core.errors import UserError
@@ -32,7 +32,7 @@ def test_comparing(toy: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "said"),
+    ("folders", "sentence"),
     [
         (["toy"], "two or more"),
         ("toy", "two or more"),
@@ -43,11 +43,11 @@ def test_comparing(toy: Path, tmp_path: Path) -> None:
     ids=str,
 )
 def test_what_cannot_be_compared(
-    given: list[str] | str, said: str, monkeypatch: pytest.MonkeyPatch
+    folders: list[str] | str, sentence: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(REFERENCE)
-    with pytest.raises(UserError, match=re.escape(said)):
-        faultpath.compare(given)
+    with pytest.raises(UserError, match=re.escape(sentence)):
+        faultpath.compare(folders)
 
 
 def test_compare_on_the_command_line(toy: Path, tmp_path: Path) -> None:
@@ -62,9 +62,23 @@ def test_compare_on_the_command_line(toy: Path, tmp_path: Path) -> None:
     record = faultpath.open_run(toy).record
     assert shown.count(words(record).headline) == 4
     assert (tmp_path / "page.html").stat().st_size < 3_000_000
-    told = json.loads(command("report", *folders, "--json").out)
-    assert told["headline"] in shown
-    assert told["differs"] == {}
-    assert [each["folder"] for each in told["runs"]] == [str(folder) for folder in folders]
-    assert told["runs"][0]["record"] == json.loads((toy / "record.json").read_text())
+    printed = json.loads(command("report", *folders, "--json").out)
+    assert printed["headline"] in shown
+    assert printed["differs"] == {}
+    assert [each["folder"] for each in printed["runs"]] == [str(folder) for folder in folders]
+    assert printed["runs"][0]["record"] == json.loads((toy / "record.json").read_text())
     assert "cannot write" in command("report", *folders, "--out", tmp_path).refused()
+
+
+QUESTION = AUDIT | {"scenes": 4, "signals": False}
+
+
+@pytest.mark.usefixtures("without_pages")
+def test_each_size_is_an_audit_as_if_alone(tmp_path: Path) -> None:
+    sizes = QUESTION | {"fault": "gain:scale=0.6,0.8"}
+    _, strong = faultpath.api.audits(TOY, **sizes, folder=tmp_path)
+    alone = faultpath.audit(TOY, **QUESTION | {"fault": "gain:scale=0.8"}, folder=tmp_path / "a")
+    assert strong.record == alone.record
+    assert strong.table() == alone.table()
+    with pytest.raises(UserError, match=r"several sizes: use faultpath\.api\.audits"):
+        faultpath.audit(TOY, **sizes)

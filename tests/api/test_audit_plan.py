@@ -1,12 +1,15 @@
-"""Which treatments a question needs, and which of them are one and the same."""
+"""Which treatments a question needs, which are one and the same, and which taps they faulted."""
 
 import pytest
 from still import Still
+from toy_audits import TOY
 
 from faultpath.analyses.audit import AuditAnalysis, audit_analysis
+from faultpath.analyses.model import FaultedTap
 from faultpath.core.errors import UserError
 from faultpath.faults import Fault, FaultText, Scale
 from faultpath.interface import read_interface
+from faultpath.run.execution.runner import run_plan
 from faultpath.run.plan import SystemSpec
 from faultpath.run.question import (
     AuditQuestion,
@@ -15,6 +18,7 @@ from faultpath.run.question import (
     ScanQuestion,
     TraceQuestion,
 )
+from faultpath.run.registry import load_system
 from faultpath.system import Status, Variant
 
 FACTS = """
@@ -141,7 +145,7 @@ def test_the_question_says_what_was_asked():
 
 
 @pytest.mark.parametrize(
-    ("call", "says"),
+    ("call", "sentence"),
     [
         (("plian", "observed", "mass:scale=2"), "'plian'.*'plain'.*deaf, limited, logged"),
         (("plain", "plain", "mass:scale=2"), "both 'plain'.*two different"),
@@ -149,8 +153,8 @@ def test_the_question_says_what_was_asked():
         (("deaf", "plain", "heat:scale=2"), "heat.*neither 'deaf' nor 'plain'"),
     ],
 )
-def test_questions_that_cannot_be_asked(call, says):
-    with pytest.raises(UserError, match=says):
+def test_questions_that_cannot_be_asked(call, sentence):
+    with pytest.raises(UserError, match=sentence):
         planned(*call)
 
 
@@ -183,11 +187,11 @@ def test_the_question_names_its_primary_contrast_and_what_it_generalises_to():
 
 
 def test_newly_trained_models_need_trained_models_and_several_seeds(monkeypatch):
-    asked = {"generalise": "models", "seeds": (0, 1, 2, 3, 4)}
+    models = {"generalise": "models", "seeds": (0, 1, 2, 3, 4)}
     with pytest.raises(UserError, match="no trained models to generalise to"):
-        planned("plain", "observed", "mass:scale=2", **asked)
+        planned("plain", "observed", "mass:scale=2", **models)
     monkeypatch.setattr(Paper, "trained", True)
-    audit = planned("plain", "observed", "mass:scale=2", **asked)
+    audit = planned("plain", "observed", "mass:scale=2", **models)
     assert (audit.question.generalise, audit.facts.trained) == ("models", True)
     with pytest.raises(UserError, match=r"4 seeds cannot show how .*--seeds 0,1,2,3,4"):
         planned("plain", "observed", "mass:scale=2", generalise="models", seeds=(0, 1, 2, 3))
@@ -203,3 +207,39 @@ def test_audits_and_maps_run_in_scenes_that_nothing_was_chosen_by() -> None:
     questions = (AuditQuestion, MapQuestion, ScanQuestion, CheckQuestion, TraceQuestion)
     libraries = [question.model_fields["library"].default for question in questions]
     assert libraries == ["held-out", "held-out", "selection", "selection", "selection"]
+
+
+@pytest.mark.parametrize(
+    ("text", "in_force", "altered"),
+    [
+        ("gain:scale=0.6", 100, 100),
+        ("gain:scale=0.6,onset=90", 10, 10),
+        ("gain:scale=1", 100, 0),
+        ("gain:scale=0.6,onset=100", 0, 0),
+    ],
+    ids=["always", "late", "without an effect", "after the end"],
+)
+def test_the_result_has_the_taps_that_the_delivery_log_says_were_faulted(
+    tmp_path, text, in_force, altered
+):
+    spec, fault = SystemSpec(name=TOY), FaultText.read(text)
+    question = AuditQuestion(baseline="calibrated", repair="blind", fault=fault, scenes=4)
+    system = load_system(spec)
+    audit = audit_analysis(system, spec, question, system.library("carts"))
+    run = run_plan(audit.plan, tmp_path, workers=0)
+    controller, observer = (
+        (
+            FaultedTap(
+                channel="gain", reader=reader, faulted_steps=4 * in_force, altered_steps=4 * altered
+            ),
+        )
+        * (in_force > 0)
+        for reader in ("controller.inverse", "observer.model")
+    )
+    conditions = audit.conclude(run.trials, run.deliveries).conditions
+    assert {of.name: (of.faulted, of.baseline_faulted) for of in conditions} == {
+        "correct": ((), ()),
+        "controller": (controller, controller),
+        "observer": ((), observer),
+        "shared": (controller, controller + observer),
+    }

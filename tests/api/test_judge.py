@@ -24,9 +24,8 @@ LOSSES = sum(a and not b for a, b in zip(*WON.values(), strict=True))
 
 
 def judged(results: object, folder: Path, **more: Any) -> Run:
-    asked = {"baseline": "old", "repair": "new", "folder": folder, "progress": False} | more
-    # Also what a user may give by mistake.
-    return faultpath.judge(results, **asked)  # pyright: ignore[reportArgumentType]
+    question = {"baseline": "old", "repair": "new", "folder": folder, "progress": False} | more
+    return faultpath.judge(results, **question)  # pyright: ignore[reportArgumentType] - mistakes too
 
 
 def test_an_audits_own_outcomes_are_decided_as_the_audit(tmp_path: Path) -> None:
@@ -92,16 +91,16 @@ def test_what_other_tools_write_is_read(
     assert run.record.secondary[0].time_s is None
     assert run.record.facts.pairing == pairing
     assert run.table().column("time_s").null_count == 60
-    said = " ".join(run.sentences)
-    assert ("by their keys alone" in said) == (pairing == "keys")
-    assert "correct inputs" not in said + run.headline
+    text = " ".join(run.sentences)
+    assert ("by their keys alone" in text) == (pairing == "keys")
+    assert "correct inputs" not in text + run.headline
 
 
 def test_missing_pairs_are_named_and_bound_what_is_decided(tmp_path: Path) -> None:
     better: Successes = {"old": [False] * 12 + [True] * 8, "new": [True] * 20}
     file = table(tmp_path / "all.csv", {"nominal": better, "shared": better})
     whole = judged(file, tmp_path / "whole")
-    assert [each.sign for each in whole.record.effects] == [1, 1]
+    assert [effect.sign for effect in whole.record.effects] == [1, 1]
 
     lines = file.read_text().splitlines(keepends=True)
     alone = [line for line in lines if line.startswith("new") and "shared" in line][:9]
@@ -110,14 +109,14 @@ def test_missing_pairs_are_named_and_bound_what_is_decided(tmp_path: Path) -> No
     run = judged(file, tmp_path / "run")
     nominal, shared = run.record.effects
     assert (shared.condition, shared.void, shared.scenes) == (SHARED, 9, 11)
-    for each, against, favour in ((nominal, 55.0, 65.0), (shared, 15.0, 60.0)):
-        assert each.missing is not None
-        assert each.missing.against_pp == pytest.approx(against)
-        assert each.missing.favour_pp == pytest.approx(favour)
+    for effect, against, favour in ((nominal, 55.0, 65.0), (shared, 15.0, 60.0)):
+        assert effect.missing is not None
+        assert effect.missing.against_pp == pytest.approx(against)
+        assert effect.missing.favour_pp == pytest.approx(favour)
     assert not shared.sign
-    found = " ".join(run.words.findings)
-    assert "Under the shared fault, 9 trials of new are missing, for example that in s0" in found
-    assert "1 trial of old is missing, for example that in s19 (seed 0)" in found
+    findings = " ".join(run.words.findings)
+    assert "Under the shared fault, 9 trials of new are missing, for example that in s0" in findings
+    assert "1 trial of old is missing, for example that in s19 (seed 0)" in findings
     assert run.failed == 11
 
 
@@ -128,7 +127,7 @@ def test_trials_that_began_otherwise_are_no_pair(tmp_path: Path) -> None:
     assert run.record.effects[0].void == 1
     assert run.headline == "No result: the two versions did not meet the same conditions."
     assert run.broken
-    assert any("are no pair in scene 's3'" in said for said in run.words.findings)
+    assert any("are no pair in scene 's3'" in finding for finding in run.words.findings)
 
 
 def test_a_task_with_all_of_its_scenes_is_one_of_few(tmp_path: Path) -> None:
@@ -146,7 +145,7 @@ def test_a_task_with_all_of_its_scenes_is_one_of_few(tmp_path: Path) -> None:
     assert "new tasks like these" in " ".join(run.sentences)
     assert run.headline.startswith("Too few scenes")
     by_scene = judged(file, tmp_path / "scenes")
-    assert any("--cluster task" in said for said in by_scene.words.findings)
+    assert any("--cluster task" in finding for finding in by_scene.words.findings)
 
 
 @pytest.mark.usefixtures("without_pages")
@@ -156,7 +155,7 @@ def test_few_scenes_and_ties_claim_nothing(n: int, won: tuple[bool, bool], tmp_p
     variants = {"old": [won[0]] * n, "new": [won[1]] * n}
     run = judged(table(tmp_path / "few.csv", {"": variants}), tmp_path / "run")
     assert run.headline.startswith("Too few scenes")
-    assert not any("more often" in said for said in run.sentences)
+    assert not any("more often" in sentence for sentence in run.sentences)
 
 
 ROW = "old,s0,0,,1,h\nnew,s0,0,,1,h\n"
@@ -209,13 +208,24 @@ REFUSED: dict[str, tuple[str, dict[str, Any], str]] = {
 }
 
 
-@pytest.mark.parametrize(("text", "more", "says"), REFUSED.values(), ids=REFUSED)
+DAMAGED: dict[str, tuple[str, str]] = {
+    "a.txt": ("", "is of no kind that is read"),
+    "b.json": ('{"per_task": [{"task_id": 1}]}', r"per_task\[0\].task_group: is missing"),
+    "c.json": ("{}", "is neither LeRobot's eval_info.json"),
+    "a.jsonl": ('{"variant": 1}\n{', "a.jsonl, line 2: is not JSON"),
+    "a.parquet": ("PAR1", "a.parquet: cannot be read"),
+}
+CASES = {case: ("all.csv", *refused) for case, refused in REFUSED.items()}
+CASES |= {file: (file, text, {}, sentence) for file, (text, sentence) in DAMAGED.items()}
+
+
+@pytest.mark.parametrize(("name", "text", "more", "sentence"), CASES.values(), ids=CASES)
 def test_what_cannot_be_judged_is_refused(
-    text: str, more: dict[str, Any], says: str, tmp_path: Path
+    name: str, text: str, more: dict[str, Any], sentence: str, tmp_path: Path
 ) -> None:
-    (file := tmp_path / "all.csv").write_text(text)
-    with pytest.raises(UserError, match=says):
-        judged(file, tmp_path / "run", **more)
+    (tmp_path / name).write_text(text)
+    with pytest.raises(UserError, match=sentence):
+        judged(tmp_path / name, tmp_path / "run", **more)
     assert not (tmp_path / "run").exists()
 
 
@@ -257,22 +267,6 @@ def test_a_table_of_a_spreadsheet_may_begin_with_a_byte_order_mark(tmp_path: Pat
     marked.write_text(HEADER + ROW, encoding="utf-8-sig")
     one, two = (judged(file, tmp_path / file.stem).record for file in (plain, marked))
     assert one.effects == two.effects
-
-
-DAMAGED: dict[str, tuple[str, bytes, str]] = {
-    "kind": ("a.txt", b"", "is of no kind that is read"),
-    "json": ("a.json", b'{"per_task": [{"task_id": 1}]}', r"per_task\[0\].task_group: is missing"),
-    "neither": ("a.json", b"{}", "is neither LeRobot's eval_info.json"),
-    "line": ("a.jsonl", b'{"variant": 1}\n{', "a.jsonl, line 2: is not JSON"),
-    "parquet": ("a.parquet", b"PAR1", "a.parquet: cannot be read"),
-}
-
-
-@pytest.mark.parametrize(("name", "data", "says"), DAMAGED.values(), ids=DAMAGED)
-def test_a_damaged_file_is_one_sentence(name: str, data: bytes, says: str, tmp_path: Path) -> None:
-    (tmp_path / name).write_bytes(data)
-    with pytest.raises(UserError, match=says):
-        judged(tmp_path / name, tmp_path / "run")
 
 
 @pytest.mark.parametrize("stored", ["", "{}", '{"format": 2}'])

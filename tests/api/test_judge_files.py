@@ -23,8 +23,8 @@ LM_EVAL = "samples_gsm8k_2026-01-02T03-04-05.678901.jsonl"
 
 
 def judged(results: object, tmp_path: Path, **more: Any) -> faultpath.Run:
-    asked = {"baseline": "old", "repair": "new", "folder": tmp_path / "run", "progress": False}
-    return faultpath.judge(results, **(asked | more))  # pyright: ignore[reportArgumentType]
+    question = {"baseline": "old", "repair": "new", "folder": tmp_path / "run", "progress": False}
+    return faultpath.judge(results, **(question | more))  # pyright: ignore[reportArgumentType] - mistakes too
 
 
 def refused(results: object, tmp_path: Path, **more: Any) -> str:
@@ -84,7 +84,7 @@ SUCCESSES = "per_task[0].metrics.successes: is "
 
 
 @pytest.mark.parametrize(
-    ("name", "content", "says"),
+    ("name", "content", "sentence"),
     [
         ("a.jsonl", {"variant": "old", "scene": ["x"], "success": 1}, "line 1: the scene is"),
         (
@@ -113,11 +113,11 @@ SUCCESSES = "per_task[0].metrics.successes: is "
     ],
 )
 def test_lists_groups_and_names_are_what_they_should_be(
-    name: str, content: object, says: str, tmp_path: Path
+    name: str, content: object, sentence: str, tmp_path: Path
 ) -> None:
     (tmp_path / name).write_text(json.dumps(content))
     label = "old=" if name in ("eval_info.json", LM_EVAL) else ""
-    assert says in refused(f"{label}{tmp_path / name}", tmp_path)
+    assert sentence in refused(f"{label}{tmp_path / name}", tmp_path)
 
 
 @pytest.mark.parametrize("separator", ["\u2028", "\x85", "\x1e"])
@@ -139,10 +139,10 @@ def test_a_label_that_contradicts_the_file_is_refused(tmp_path: Path) -> None:
         rows = "".join(f"{variant},s{n},0,nominal,{won},h\n" for n in range(20))
         (tmp_path / f"{variant}.csv").write_text(HEADER + rows)
     old, new = tmp_path / "old.csv", tmp_path / "new.csv"
-    said = refused([f"new={old}", f"old={new}"], tmp_path)
-    assert "line 2: the file says variant 'old' and the command line 'new'" in said
-    said = refused([f"old@shared={old}", f"new@shared={new}"], tmp_path)
-    assert "the file says condition 'nominal' and the command line 'shared'" in said
+    sentence = refused([f"new={old}", f"old={new}"], tmp_path)
+    assert "line 2: the file says variant 'old' and the command line 'new'" in sentence
+    sentence = refused([f"old@shared={old}", f"new@shared={new}"], tmp_path)
+    assert "the file says condition 'nominal' and the command line 'shared'" in sentence
     assert judged([f"old={old}", f"new@nominal={new}"], tmp_path).record.effects[0].sign == 1
 
 
@@ -151,8 +151,8 @@ def test_a_label_names_the_variant_of_a_model_that_is_no_variant(tmp_path: Path)
     labelled = [f"old={logs[0]}", f"new={logs[1]}"]
     assert judged(labelled, tmp_path).record.question.repair == "new"
     logs = [inspect_log(tmp_path / f"{variant}-named", variant, WON) for variant in ("old", "new")]
-    said = refused([f"new={logs[0]}", f"old={logs[1]}"], tmp_path / "other")
-    assert "the file says variant 'old' and the command line 'new'" in said
+    sentence = refused([f"new={logs[0]}", f"old={logs[1]}"], tmp_path / "other")
+    assert "the file says variant 'old' and the command line 'new'" in sentence
 
 
 class Sample(SimpleNamespace):
@@ -238,8 +238,8 @@ def test_a_small_table_does_not_fill_the_memory(
         read_table(data)
     with pytest.raises(Unreadable, match="it unpacks to more than 256 MiB"):
         list(read_rows(data))
-    said = refused(tmp_path / "a.parquet", tmp_path)
-    assert "256 MiB" in said or "has no success" in said or "names no scene" in said
+    sentence = refused(tmp_path / "a.parquet", tmp_path)
+    assert "256 MiB" in sentence or "has no success" in sentence or "names no scene" in sentence
 
 
 def test_names_that_are_no_text_are_a_damaged_table(tmp_path: Path) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pyarrow.parquet as pq
 import pytest
-from cli_runs import ROOT, Ended, audit, faultpath, shards
+from cli_runs import ROOT, Ended, audit, shards
 from written import written
 
 from faultpath.analyses.model import SHARED
@@ -83,15 +83,6 @@ def test_a_second_time_everything_is_kept_and_json_is_all_of_the_standard_output
     assert json.loads((run / "provenance.json").read_text())["blocks_computed"] == 0
 
 
-def test_reports_are_made_again_from_what_is_stored(run):
-    before = {name: (run / name).read_bytes() for name in ("report.html", "table.md")}
-    for name in before:
-        (run / name).unlink()
-    ended = faultpath("report", run)
-    assert (ended.status, ended.err) == (0, "")
-    assert {name: (run / name).read_bytes() for name in before} == before
-
-
 def test_without_a_folder_the_run_is_called_after_its_question_and_not_its_place(tmp_path):
     for place, fault in (("one", "0.6"), ("one", "0.5"), ("two", "0.6")):
         (tmp_path / place).mkdir(exist_ok=True)
@@ -115,23 +106,6 @@ def test_another_metric_of_the_kept_trials_runs_nothing():
     assert "Kept 16 of 16 trials" in ended.out
     assert list(Path("runs").iterdir()) == [folder]
     assert open_run(folder).record.question.metric == "terminal_distance_m"
-
-
-def test_after_an_edit_a_run_starts_anew_beside_the_other(tmp_path):
-    text = (ROOT / "examples" / "toy.py").read_text()
-    (system := tmp_path / "toy.py").write_text(text)
-    for kept in (False, True):
-        ended = audit(system=f"{system}:create")
-        assert ("Kept 48 of 48 trials, from 20" in ended.out) == kept
-    (before,) = Path("runs").iterdir()
-    assert "48 trials in 6 blocks, 0 of them" in (before / "report.html").read_text()
-    outcomes = (before / "outcomes.parquet").read_bytes()
-
-    system.write_text(text.replace("TOLERANCE_M = 0.1, 100, 0.25", "TOLERANCE_M = 0.1, 100, 9.0"))
-    assert audit(system=f"{system}:create").status == 0
-    (after,) = {*Path("runs").iterdir()} - {before}
-    assert (before / "outcomes.parquet").read_bytes() == outcomes
-    assert open_run(after).record.counts != open_run(before).record.counts
 
 
 def test_a_failed_trial_is_shown_and_the_status_says_so():

@@ -56,7 +56,7 @@ def limited(seconds: float) -> Iterator[None]:
         signal.signal(signal.SIGALRM, before)
 
 
-def held(folder: Path) -> dict[str, str]:
+def digests(folder: Path) -> dict[str, str]:
     """Return the digest of each file that holds anything: a command may fill an empty one."""
     return {
         str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
@@ -72,7 +72,7 @@ def wrong(line: list[str], ended: Ended, before: dict[str, str], here: Path) -> 
     last = ended.err.splitlines()[-1:] or [""]
     if ended.status == 2 and (len(last[0]) < 30 or INNER.search(last[0])):
         return f"nothing is said: {last}"
-    after, verb = held(here), line[0]
+    after, verb = digests(here), line[0]
     lost = [name for name, digest in before.items() if after.get(name) != digest]
     if verb in ("report", "replay"):  # it writes the pages of its own run, and what it recorded
         own = (*PAGES, *(("signals.parquet", "provenance.json") if verb == "replay" else ()))
@@ -94,7 +94,7 @@ def test_odd_inputs_end_in_a_sentence(
         here.mkdir()
         monkeypatch.chdir(here)
         line = [str(part).encode("utf-8", "replace").decode() for part in case(base, here, rng)]
-        before = held(here)
+        before = digests(here)
         try:
             with limited(LIMIT_S):
                 fault = wrong(line, faultpath(*line), before, here)

@@ -39,7 +39,7 @@ DECLARED = {
     "fingerprint that fails": ("def fingerprint(self):\n        return 1 / 0  # here", "Zero"),
 }
 
-FLOWN = {
+RUN = {
     "list": ("observer.deliver('velocity', 'difference', [0.0], 0)  # here", "Reading"),
     "unknown module": ("taps.for_module('obsever')  # here", "did you mean 'observer'"),
     "no outcomes": ("return []", "one for each"),
@@ -55,10 +55,10 @@ def _system(tmp_path: Path, code: str) -> tuple[str, str]:
     return f"{path}:create", f"mine.py, line {here}:" if here else ""
 
 
-@pytest.mark.parametrize(("code", "says"), BROKEN.values(), ids=BROKEN)
-def test_a_system_that_does_not_load(code, says, tmp_path):
+@pytest.mark.parametrize(("code", "words"), BROKEN.values(), ids=BROKEN)
+def test_a_system_that_does_not_load(code, words, tmp_path):
     system, place = _system(tmp_path, code)
-    sentence = audit(system=system, out="run").refused(place or "mine.py, line", says)
+    sentence = audit(system=system, out="run").refused(place or "mine.py, line", words)
     assert sentence.count("mine.py, line") == 1
     assert not (tmp_path / "run").exists()
 
@@ -69,17 +69,17 @@ def test_a_file_that_is_no_python(source, tmp_path):
     audit(system="mine.py:create").refused("mine.py")
 
 
-@pytest.mark.parametrize(("code", "says"), DECLARED.values(), ids=DECLARED)
-def test_a_system_that_declares_nonsense(code, says, tmp_path):
+@pytest.mark.parametrize(("code", "words"), DECLARED.values(), ids=DECLARED)
+def test_a_system_that_declares_nonsense(code, words, tmp_path):
     code = f"class Mine(Toy):\n    {code}\ndef create() -> System:\n    return Mine()"
     system, place = _system(tmp_path, code)
-    audit(system=system, out="run").refused(place, says)
+    audit(system=system, out="run").refused(place, words)
     assert not (tmp_path / "run" / "record.json").exists()
 
 
-@pytest.mark.parametrize(("what", "workers"), [*((what, 0) for what in FLOWN), ("list", 1)])
-def test_a_system_that_flies_wrongly(what, workers, tmp_path):
-    code, says = FLOWN[what]
+@pytest.mark.parametrize(("what", "workers"), [*((what, 0) for what in RUN), ("list", 1)])
+def test_a_system_that_runs_wrongly(what, workers, tmp_path):
+    code, words = RUN[what]
     run = f"""
         class Mine(Toy):
             def run(self, variant, scenes, taps, seed):
@@ -89,12 +89,12 @@ def test_a_system_that_flies_wrongly(what, workers, tmp_path):
             return Mine()
         """
     system, place = _system(tmp_path, dedent(run))
-    sentence = audit(system=system, out="run", workers=workers).refused(place, says)
+    sentence = audit(system=system, out="run", workers=workers).refused(place, words)
     assert sentence.count("mine.py, line") <= 1
-    told = audit("--traceback", system=system, out="run", workers=workers)
-    assert told.status == 2
-    assert "Traceback (most recent call last)" in told.err
-    assert "faultpath: " in told.err.splitlines()[-1]
+    traced = audit("--traceback", system=system, out="run", workers=workers)
+    assert traced.status == 2
+    assert "Traceback (most recent call last)" in traced.err
+    assert "faultpath: " in traced.err.splitlines()[-1]
 
 
 def test_an_error_of_ours_below_a_system_keeps_its_traceback_too(tmp_path):
@@ -125,8 +125,8 @@ def test_a_wrong_argument_names_the_line_and_leaves_open_whose_fault_it_is(tmp_p
 
 @pytest.mark.parametrize("before", [True, False])
 def test_traceback_goes_before_and_after_the_verb(before):
-    asked = ["trace", "quadcopter"]
-    told = faultpath("--traceback", *asked) if before else faultpath(*asked, "--traceback")
-    assert told.status == 2
-    assert re.search(r"^Traceback.*\nfaultpath: there is no system", told.err, re.DOTALL)
+    line = ["trace", "quadcopter"]
+    ended = faultpath("--traceback", *line) if before else faultpath(*line, "--traceback")
+    assert ended.status == 2
+    assert re.search(r"^Traceback.*\nfaultpath: there is no system", ended.err, re.DOTALL)
     assert "--traceback" in faultpath("--help").out

@@ -17,9 +17,9 @@ from faultpath.cli.options import path
 
 
 def _paths(verbs: typer.Typer, before: tuple[str, ...] = ()) -> list[tuple[str, ...]]:
-    found: list[tuple[str, ...]] = []
+    options: list[tuple[str, ...]] = []
     for group in verbs.registered_groups:
-        found += _paths(group.typer_instance, (*before, group.name))
+        options += _paths(group.typer_instance, (*before, group.name))
     for verb in verbs.registered_commands:
         for name, parameter in inspect.signature(verb.callback).parameters.items():
             kind, *how = get_args(parameter.annotation) or (parameter.annotation,)
@@ -27,8 +27,8 @@ def _paths(verbs: typer.Typer, before: tuple[str, ...] = ()) -> list[tuple[str, 
                 assert how[0].parser is path, f"{verb.name}: {name} needs parser=path"
                 named = how[0].default if isinstance(how[0].default, str) else f"--{name}"
                 option = named if isinstance(how[0], OptionInfo) else name
-                found.append((*before, verb.name, option))
-    return found
+                options.append((*before, verb.name, option))
+    return options
 
 
 @pytest.mark.parametrize("option", _paths(build()), ids=" ".join)

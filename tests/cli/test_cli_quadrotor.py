@@ -34,9 +34,9 @@ def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def _audit(baseline: str, repair: str, **options: object) -> Ended:
-    asked = {"system": "quadrotor", "fault": "calibration=0.1", "scenes": 2, "out": "run"}
-    asked |= {"library": "mine.json", "environment": "free-space"}
-    return audit(**asked | {"baseline": baseline, "repair": repair} | options)
+    question = {"system": "quadrotor", "fault": "calibration=0.1", "scenes": 2, "out": "run"}
+    question |= {"library": "mine.json", "environment": "free-space"}
+    return audit(**question | {"baseline": baseline, "repair": repair} | options)
 
 
 def test_a_part_and_a_library_of_ones_own_are_audited_and_reported():
@@ -87,9 +87,3 @@ def test_workers_build_the_part_too_and_what_they_find_is_shown_once():
 )
 def test_a_mistake_is_one_sentence(repair, name):
     _audit("wm-a", repair).refused(name)
-
-
-def test_help_says_where_a_part_is_named():
-    shown = faultpath("audit", "quadrotor", "--help").out
-    assert "--bring" in shown
-    assert "file.py:factory" in shown

@@ -32,8 +32,8 @@ def test_a_missing_extra_is_a_sentence():
 
 def test_another_version_on_the_cluster_is_a_sentence():
     pytest.importorskip("ray")
-    says = "Version mismatch: The cluster was started with:\n    Ray: 2.1\n    Python: 3.9\n"
-    with patch("ray.init", side_effect=RuntimeError(says)):
+    message = "Version mismatch: The cluster was started with:\n    Ray: 2.1\n    Python: 3.9\n"
+    with patch("ray.init", side_effect=RuntimeError(message)):
         ended = audit(executor="ray:auto", workers=1, out="run")
     ended.refused("Version mismatch: The cluster was started with: Ray: 2.1")
 
@@ -41,15 +41,15 @@ def test_another_version_on_the_cluster_is_a_sentence():
 def test_without_a_cluster_one_is_started_here_with_as_many_cpus_as_workers(monkeypatch):
     pytest.importorskip("ray")
     monkeypatch.delenv("RAY_ADDRESS", raising=False)
-    asked = []
+    calls = []
 
     def init(address, **more):
-        asked.append((address, more.get("num_cpus")))
+        calls.append((address, more.get("num_cpus")))
         raise ConnectionError("none runs") if address == "auto" else Exception("no room\n")
 
     with patch("ray.init", side_effect=init):
         ended = audit(executor="ray", workers=3, out="run")
-    assert asked == [("auto", None), ("local", 3)]
+    assert calls == [("auto", None), ("local", 3)]
     ended.refused("no room")
 
 
@@ -57,9 +57,9 @@ def test_what_rays_threads_print_is_no_output_of_ours(capsys):
     pytest.importorskip("ray")
     from faultpath.run.work.ray_cluster import _WithoutNews
 
-    told = _WithoutNews(sys.stdout)
-    print("ours", file=told)
-    thread = Thread(target=lambda: print("theirs", file=told), name="ray_listen_error_messages")
+    output = _WithoutNews(sys.stdout)
+    print("ours", file=output)
+    thread = Thread(target=lambda: print("theirs", file=output), name="ray_listen_error_messages")
     thread.start()
     thread.join()
     assert capsys.readouterr() == ("ours\n", "theirs\n")

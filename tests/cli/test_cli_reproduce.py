@@ -62,7 +62,9 @@ def test_the_same_again_runs_nothing_and_opens_as_it_was_left(done: Reproduction
     command("report", done.folder).refused("pages of the reproduction")
 
 
-@pytest.mark.parametrize("name", ["reproduction.json", "outcomes.parquet", "deliveries.json"])
+@pytest.mark.parametrize(
+    "name", ["reproduction.json", "outcomes.parquet", "evidence.parquet", "deliveries.json"]
+)
 def test_a_file_that_was_changed_since_is_named(
     done: ReproductionRun, name: str, tmp_path: Path
 ) -> None:

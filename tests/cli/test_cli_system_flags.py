@@ -8,7 +8,7 @@ from written import written
 
 pytestmark = pytest.mark.usefixtures("without_pages")
 
-QUADROTOR = ("wind", "environment", "clearance", "predictor", "planner", "candidates", "device")
+QUADROTOR = ("wind", "environment", "clearance", "predictor", "planner", "bring", "device")
 
 CREATE = """
 from typing import Annotated, Literal

@@ -46,18 +46,11 @@ def renamed(**names: object) -> None:
 
 
 @pytest.mark.parametrize("trust", [(), ("--trust",)])
-@pytest.mark.parametrize(
-    ("system", "options"),
-    [
-        ("os:system", {"command": "touch ran"}),
-        ("signal:pause", {}),
-    ],
-)
-def test_a_function_that_builds_nothing_is_called_for_no_file(system, options, trust) -> None:
-    renamed(system=system, options=options)
+def test_a_function_that_builds_nothing_is_called_for_no_file(trust) -> None:
+    renamed(system="os:system", options={"command": "touch ran"})
     ended = faultpath("replay", "run", *trust)
     assert ended.status == 2
-    assert system.partition(":")[0] in ended.err
+    assert "os:system" in ended.err
     assert ("nothing else is called" if trust else "give --trust") in ended.err
     assert not Path("ran").exists()
     assert not Path("runs").exists()
@@ -66,8 +59,8 @@ def test_a_function_that_builds_nothing_is_called_for_no_file(system, options, t
 def test_a_file_is_imported_where_a_person_names_it_too_or_trusts_all() -> None:
     before = list(sys.path)
     for code in ((), ("--code", "other.py"), ("--code", "mine.py:other")):
-        said = faultpath("replay", "run", *code).refused("record.json names mine.py:create")
-        assert "run the command with --code mine.py:create, or give --trust" in said
+        sentence = faultpath("replay", "run", *code).refused("record.json names mine.py:create")
+        assert "run the command with --code mine.py:create, or give --trust" in sentence
         assert not Path("imported").exists()
     assert sys.path == before
     for code in (("--code", "mine.py"), ("--code", "mine.py:create"), ("--trust",)):

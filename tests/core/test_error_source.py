@@ -18,21 +18,21 @@ def test_a_distribution_that_carries_our_name_answers_for_its_own_mistakes(tmp_p
     import faultpath_zz
     import mine_zz
 
-    said = []
+    places = []
     for fails in (faultpath_zz.f, mine_zz.g):
-        with pytest.raises(IndexError) as found:
+        with pytest.raises(IndexError) as error:
             fails()
-        found.value.__traceback__ = found.value.__traceback__.tb_next  # without this test's own
-        said.append(location(found.value))
-    assert said[0] == ""
-    assert said[1].endswith("mine_zz.py, line 1")
+        error.value.__traceback__ = error.value.__traceback__.tb_next  # without this test's own
+        places.append(location(error.value))
+    assert places[0] == ""
+    assert places[1].endswith("mine_zz.py, line 1")
     assert ours("faultpath_zz")
     assert not ours("faultpath_system_mine_12ab34cd")
 
 
 def test_what_a_package_compiled_from_cython_is_nobodys_system():
     """Its frames name a file that is relative, and nowhere."""
-    with pytest.raises(KeyError) as found:
+    with pytest.raises(KeyError) as error:
         pa.table({"a": [1]}).column("b")
-    found.value.__traceback__ = found.value.__traceback__.tb_next
-    assert location(found.value) == ""
+    error.value.__traceback__ = error.value.__traceback__.tb_next
+    assert location(error.value) == ""

@@ -43,15 +43,15 @@ def test_the_lock_of_a_killed_process_is_free(tmp_path):
     command = [sys.executable, "-c", code, str(tmp_path)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout.readline() == "held\n"
-        told: list[str] = []
+        notices: list[str] = []
 
         def kill(text: str) -> None:
-            told.append(text)
+            notices.append(text)
             process.kill()
 
         with locked(tmp_path, kill):
             assert process.wait() < 0
-    assert f"(id {process.pid}) works in {tmp_path}" in told[0]
+    assert f"(id {process.pid}) works in {tmp_path}" in notices[0]
 
 
 @pytest.mark.parametrize("linked", [False, True], ids=["itself", "linked"])

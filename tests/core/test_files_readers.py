@@ -34,7 +34,7 @@ def _card(path: Path) -> object:
 
 def _shard(path: Path) -> object:
     folder = RunFolder(path.parents[1])
-    return folder.load_shard(path.name.partition("-")[0], (), lambda said: None)
+    return folder.load_shard(path.name.partition("-")[0], (), lambda notice: None)
 
 
 SCENES = "faultpath_quadrotor.scenes.library:load_library"
@@ -86,7 +86,7 @@ def test_what_is_no_file_is_refused_in_one_sentence(
 
 def test_the_lock_of_a_folder_is_a_file(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / ".lock")
-    with pytest.raises(UserError, match=r"\.lock is a pipe"), locked(tmp_path, lambda said: None):
+    with pytest.raises(UserError, match=r"\.lock is a pipe"), locked(tmp_path, lambda notice: None):
         raise AssertionError("it is locked")
 
 
@@ -132,12 +132,12 @@ JSON: dict[bytes, str] = {
 
 
 @pytest.mark.parametrize(
-    ("read", "data", "says"),
+    ("read", "data", "sentence"),
     [(read_yaml, *each) for each in (BOTH | YAML).items()]
     + [(read_json, *each) for each in (BOTH | JSON).items()],
 )
-def test_what_is_not_plain_is_refused(read: Callable[[bytes], object], data: bytes, says: str):
-    with pytest.raises(Misread, match=says) as caught:
+def test_what_is_not_plain_is_refused(read: Callable[[bytes], object], data: bytes, sentence: str):
+    with pytest.raises(Misread, match=sentence) as caught:
         read(data)
     assert "\n" not in str(caught.value)
 

@@ -254,8 +254,8 @@ def test_an_identity_keeps_every_bit(to: Any, intervention: Intervention) -> Non
 def test_says_why_it_does_not_fit(
     intervention: Intervention, shape: tuple[int, ...], misfit: str | None
 ) -> None:
-    said = intervention.misfit(shape)
-    assert said is misfit if misfit is None else (said or "").startswith(misfit)
+    sentence = intervention.misfit(shape)
+    assert sentence is misfit if misfit is None else (sentence or "").startswith(misfit)
 
 
 def test_every_kind_is_a_public_name():

@@ -1,5 +1,7 @@
 """Fault text: what it means, and the sentence for every mistake."""
 
+from typing import Any
+
 import pytest
 from fault_toys import INTERFACE, calibration
 
@@ -11,6 +13,7 @@ from faultpath.faults import (
     Dropout,
     Erase,
     Fault,
+    FaultText,
     Freeze,
     Hold,
     Noise,
@@ -102,7 +105,7 @@ def test_joined_faults_have_one_cause_and_each_its_loading() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "sentence"),
     [
         ("", "the text is empty"),
         ("mass:freeze,,", "something is missing between commas"),
@@ -157,14 +160,53 @@ def test_joined_faults_have_one_cause_and_each_its_loading() -> None:
         ("seen_wind:freeze", "modules read 'seen_wind' as 'wind'; write wind:freeze"),
     ],
 )
-def test_a_mistake_is_one_sentence_that_quotes_the_text(text: str, said: str) -> None:
+def test_a_mistake_is_one_sentence_that_quotes_the_text(text: str, sentence: str) -> None:
     with pytest.raises(UserError) as caught:
         parse(text)
     assert str(caught.value).startswith(f"fault '{text}': ")
-    assert said in str(caught.value)
+    assert sentence in str(caught.value)
 
 
 def test_a_preset_that_returns_no_faults_is_a_mistake_of_the_system() -> None:
     alone = Fault(channel="mass", intervention=Freeze())
+    presets: Any = {"one": lambda size: alone}  # which a type checker would refuse
     with pytest.raises(UserError, match="'one=1': preset 'one' of the system has to return a tup"):
-        parse_fault("one=1", INTERFACE, {"one": lambda size: alone}, 0.05)  # pyright: ignore[reportArgumentType]
+        parse_fault("one=1", INTERFACE, presets, 0.05)
+
+
+@pytest.mark.parametrize(
+    ("text", "texts"),
+    [
+        ("gain:scale=0.8,0.9", ("gain:scale=0.8", "gain:scale=0.9")),
+        ("c=+0.1,-0.1", ("c=+0.1", "c=-0.1")),
+        (
+            "v:noise=0.1,0.2,relative,onset=3@p+q",
+            ("v:noise=0.1,relative,onset=3@p+q", "v:noise=0.2,relative,onset=3@p+q"),
+        ),
+        ("v:noise=0.1@p,0.2", ("v:noise=0.1@p", "v:noise=0.2@p")),
+        ("w:offset=1/0/0,0/1/0", ("w:offset=1/0/0", "w:offset=0/1/0")),
+        ("w:freeze,onset=3", ("w:freeze,onset=3",)),
+        ("c=-0.2..0.2/5", ("c=-0.2", "c=-0.1", "c=0", "c=0.1", "c=0.2")),
+        ("c=+1..-1/2", ("c=1", "c=-1")),
+        ("g:scale=.8..1/2@p,onset=3", ("g:scale=0.8,onset=3@p", "g:scale=1,onset=3@p")),
+        ("g:scale=0.8..0.9/2,1.5", ("g:scale=0.8", "g:scale=0.9", "g:scale=1.5")),
+    ],
+)
+def test_a_text_for_each_size(text, texts):
+    assert tuple(map(str, FaultText.read(text).each())) == texts
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("gain:scale=0.8,0.80", "names a size twice"),
+        ("gain:freeze,0.8", "0.8 is a further size, and there is no first"),
+        ("gain:scale=0.8..0.9", "write FROM..TO/COUNT"),
+        ("gain:offset=1/0/0..2/0/0/3", "write FROM..TO/COUNT"),
+        ("gain:scale=0.8..0.9/1000000000", "a range takes 2 to 99"),
+        ("gain:scale=0.8..0.8/3", "names a size twice"),
+    ],
+)
+def test_lists_that_are_none(text, sentence):
+    with pytest.raises(UserError, match=sentence):
+        FaultText.read(text)

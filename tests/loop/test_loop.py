@@ -35,8 +35,8 @@ def interface_of(parts, place=""):
 def execute(modules, faults=(), place="", trace=None, guard=False, plant=None):
     """Return the instants and the taps of one execution."""
     interface, parts = wired(modules, place, plant)
-    asked = {"scenes": SCENES, "dt_s": DT_S, "privileged": ("field",), "guard": guard}
-    taps = Taps(interface, resolve(faults, interface), **asked, observer=trace)
+    options = {"scenes": SCENES, "dt_s": DT_S, "privileged": ("field",), "guard": guard}
+    taps = Taps(interface, resolve(faults, interface), **options, observer=trace)
     with contextlib.suppress(Enough):
         return list(Loop(interface, parts).execute(Batch(SCENES, 0, DT_S), taps)), taps
     return [], taps
@@ -145,7 +145,7 @@ PEEKING = odd(Guess, step=lambda self, inputs, memory: inputs.truth("true_place"
 
 
 @pytest.mark.parametrize(
-    ("wrong", "said"),
+    ("wrong", "sentence"),
     [
         (SILENT, "'observer' reads what channel 'action' held one step before, but no value"),
         (LATE, "source 'place' is the plant's: .* read 'place' at this step and keep its earlier"),
@@ -161,8 +161,8 @@ PEEKING = odd(Guess, step=lambda self, inputs, memory: inputs.truth("true_place"
         (without("place"), "the plant senses source 'place', but at step 0 it returned no such"),
     ],
 )
-def test_what_is_not_as_declared_is_named(wrong, said) -> None:
-    with pytest.raises(SystemMistake, match=said):
+def test_what_is_not_as_declared_is_named(wrong, sentence) -> None:
+    with pytest.raises(SystemMistake, match=sentence):
         execute_with(wrong)
 
 

@@ -40,7 +40,7 @@ FEWER, TRUE = make(readers={"predictor.dynamics"}), make(bindings={"wind": "trut
 
 
 @pytest.mark.parametrize(
-    ("taps", "tap", "reading", "error", "said"),
+    ("taps", "tap", "reading", "error", "sentence"),
     [
         (make(), "mass -> planner.wind", mass(0), UndeclaredReader, "does not declare this"),
         (FEWER, "mass -> observer.model", mass(0), UndeclaredReader, "this variant has no such"),
@@ -49,9 +49,9 @@ FEWER, TRUE = make(readers={"predictor.dynamics"}), make(bindings={"wind": "trut
         (make(), "mass -> observer.model", mass(1), IllegalRead, "which is after step 0"),
     ],
 )
-def test_an_illegal_read_names_the_tap(taps, tap, reading, error, said):
+def test_an_illegal_read_names_the_tap(taps, tap, reading, error, sentence):
     channel, reader = tap.split(" -> ")
-    with pytest.raises(error, match=f"^tap {tap}: .*{re.escape(said)}"):
+    with pytest.raises(error, match=f"^tap {tap}: .*{re.escape(sentence)}"):
         taps.deliver(channel, reader, reading, 0)
 
 
@@ -82,7 +82,7 @@ def test_wrong_names_are_a_users_mistake(given: dict[str, Any], sentence: str) -
 
 
 @pytest.mark.parametrize(
-    ("changes", "says"),
+    ("changes", "sentence"),
     [
         ({"intervention": Quantise(step_size=0.5)}, "quantise turns int64 [2] into float64 [2]"),
         (
@@ -91,10 +91,10 @@ def test_wrong_names_are_a_users_mistake(given: dict[str, Any], sentence: str) -
         ),
     ],
 )
-def test_whole_numbers_are_not_turned_into_others(changes: dict[str, Any], says: str) -> None:
+def test_whole_numbers_are_not_turned_into_others(changes: dict[str, Any], sentence: str) -> None:
     taps = make([SCALE.model_copy(update=changes)])
     whole = np.array([1, 2])
-    with pytest.raises(UserError, match=re.escape(f"fault on channel 'mass': {says}")):
+    with pytest.raises(UserError, match=re.escape(f"fault on channel 'mass': {sentence}")):
         [taps.deliver("mass", "observer.model", mass(step, whole), step) for step in range(2)]
 
 

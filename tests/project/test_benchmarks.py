@@ -14,16 +14,16 @@ ROOT = Path(__file__).parents[2]
 
 def test_every_row_was_measured_or_says_why_not_and_is_shown():
     records = load().records
-    assert [each.name for each in records] == [row.name for row in ROWS]
+    assert [entry.name for entry in records] == [row.name for row in ROWS]
     assert {side for row in ROWS for side in (row.ours, row.peer) if side} == set(SIDES)
     text = (ROOT / "docs" / "performance.md").read_text("utf-8").replace("\\", "")
-    for each in records:
-        assert each.name in text
-        if each.ours is None:
-            assert each.note.startswith("Not measured: ")
+    for entry in records:
+        assert entry.name in text
+        if entry.ours is None:
+            assert entry.note.startswith("Not measured: ")
         else:
-            assert (each.peer is None) == (each.ratio is None)
-            assert (each.target is None) == (each.met is None)
+            assert (entry.peer is None) == (entry.ratio is None)
+            assert (entry.target is None) == (entry.met is None)
 
 
 def test_sizes_in_the_text_are_those_that_are_measured():
@@ -60,9 +60,9 @@ def test_every_figure_of_a_gpu_names_its_command_or_says_that_it_was_entered_by_
 
 def test_a_ratio_is_formed_within_each_round():
     target = Target(of="ratio", sense="at least", value=2.5)
-    found = record("x", "1/s", [10.0, 20.0, 40.0], [5.0, 5.0, 40.0], "peer", target)
-    assert (found.ours, found.peer, found.met) == (20.0, 5.0, False)
-    assert (found.ratio, found.low, found.high) == (2.0, 1.0, 4.0)
+    result = record("x", "1/s", [10.0, 20.0, 40.0], [5.0, 5.0, 40.0], "peer", target)
+    assert (result.ours, result.peer, result.met) == (20.0, 5.0, False)
+    assert (result.ratio, result.low, result.high) == (2.0, 1.0, 4.0)
     assert record("x", "ms", [2.0], [6.0], "peer").ratio == 3.0
 
 

@@ -48,10 +48,10 @@ def flown(scenes: int, **of: tuple[str, str]) -> Flown:
 
 
 @pytest.mark.parametrize("scenes", [0, 1, 2, 4])
-@pytest.mark.parametrize("made", [ALL, NONE, TIE])
-def test_of_few_scenes_nothing_is_said_but_that_nothing_is_decided(scenes, made):
-    for said in sentences(flown(scenes, mppi=made, cem=NONE)):
-        assert said.endswith("inconclusive in all 8 cells. No factor changes it significantly.")
+@pytest.mark.parametrize("successes", [ALL, NONE, TIE])
+def test_of_few_scenes_nothing_is_said_but_that_nothing_is_decided(scenes, successes):
+    for sentence in sentences(flown(scenes, mppi=successes, cem=NONE)):
+        assert sentence.endswith("inconclusive in all 8 cells. No factor changes it significantly.")
 
 
 def test_nothing_run_a_tie_and_a_failed_trial_decide_nothing():
@@ -72,25 +72,25 @@ def test_verdicts_carry_over_only_where_they_are_decided_so():
 
 
 def test_a_factor_changes_a_verdict_where_both_sides_are_decided():
-    found = flown(40, mppi=ALL, cem=NONE)
+    results = flown(40, mppi=ALL, cem=NONE)
     opposite = "Opposite sides are significantly ahead with planner mppi and cem, in 4 of 4 pairs"
-    assert opposite in sentences(found)[0]
-    by = {(move.reach, move.factor): move for move in moves(found)}
+    assert opposite in sentences(results)[0]
+    by = {(move.reach, move.factor): move for move in moves(results)}
     assert (by["shared", "planner"].opposite, by["shared", "planner"].change.sign) == (4, -1)
     assert (by["shared", "wind"].same, by["shared", "wind"].change.sign) == (4, 0)
-    assert [mean.sign for _, _, mean in overall(found)] == [0, 0]
+    assert [mean.sign for _, _, mean in overall(results)] == [0, 0]
 
 
 def test_a_cell_that_is_given_up_could_not_have_been_decided():
-    asked, stream = design(), np.random.default_rng(0)
+    plan, stream = design(), np.random.default_rng(0)
     given_up = 0
     for _ in range(200):
         ended = ["".join(map(str, stream.integers(0, 2, 30))) for _ in range(2)]
         cell = Cell(levels={}, baseline="gru", repair="gru+dcc", reach="shared", ended=ended)
-        if settled(asked, cell, 10) and not lead(asked, cell):
+        if settled(plan, cell, 10) and not lead(plan, cell):
             given_up += 1
             more = np.append(cell.differences, stream.integers(-1, 2, 10))
-            assert not sign(more, asked.needed["gru", "gru+dcc"])
+            assert not sign(more, plan.needed["gru", "gru+dcc"])
     assert given_up > 20
 
 
@@ -104,30 +104,30 @@ def test_a_design_with_an_unknown_level_is_refused(tmp_path):
 def test_what_is_stopped_resumes_and_a_variant_of_two_questions_flies_once(tmp_path, monkeypatch):
     monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", 3)
     monkeypatch.chdir(ROOT)
-    asked = design(2).restricted({"planner": ("mppi",), "wind": ("L3",), "sign": ("+",)})
-    asked = asked.model_copy(
-        update={"factors": {**asked.factors, "planner": {"mppi": {}, "rrt": {"planner": "rrt"}}}}
+    plan = design(2).restricted({"planner": ("mppi",), "wind": ("L3",), "sign": ("+",)})
+    plan = plan.model_copy(
+        update={"factors": {**plan.factors, "planner": {"mppi": {}, "rrt": {"planner": "rrt"}}}}
     )
-    whole = study.fly(asked, tmp_path / "whole", 0, "local", Display())
+    whole = study.fly(plan, tmp_path / "whole", 0, "local", Display())
     assert "choose one of mppi" in whole.left_out["planner rrt"]
     assert len(whole.cells) == 4  # two questions, isolated and shared
     assert whole.trials == sum(each.trials for each in whole.rounds) == 2 * 3 * 2
 
     run, calls = study.run_plan, []
 
-    def interrupted(*given, progress, **how):
+    def interrupted(*arguments, progress, **options):
         def stop(now):
             calls.append(now)
             if len(calls) == 3:
                 raise KeyboardInterrupt
             progress(now)
 
-        return run(*given, progress=stop, **how)
+        return run(*arguments, progress=stop, **options)
 
     monkeypatch.setattr(study, "run_plan", interrupted)
     with pytest.raises(Stopped):
-        study.fly(asked, tmp_path / "stopped", 0, "local", Display())
-    resumed = study.fly(asked, tmp_path / "stopped", 0, "local", Display())
+        study.fly(plan, tmp_path / "stopped", 0, "local", Display())
+    resumed = study.fly(plan, tmp_path / "stopped", 0, "local", Display())
     assert resumed.cells == whole.cells
     assert sum(each.trials for each in resumed.rounds) < whole.trials
 

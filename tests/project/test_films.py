@@ -1,4 +1,4 @@
-"""Films of the documents: each has its still, is small, and shows what the stored run says."""
+"""Pictures and films of the documents: whole, small, and showing what the stored run says."""
 
 import re
 from dataclasses import replace
@@ -9,6 +9,8 @@ import film_flights
 import film_halves
 import film_openpilot
 import film_quadrotor
+import paper_blocks
+import pictures
 import pytest
 from blocks import IMAGES, Picture, Wrong, load
 
@@ -16,6 +18,7 @@ from faultpath.report.svg import text_width
 
 ROOT = Path(__file__).resolve().parents[2]
 SVG = "{http://www.w3.org/2000/svg}"
+DARK = "@media screen and (prefers-color-scheme: dark)"
 FILMS = {"quadrotor": film_quadrotor.film, "openpilot": film_openpilot.film}
 SIZES = {"small": 11, "title": 15, "name": 13, "clock": 17}
 STORED = film_flights.Flights.model_validate_json(film_flights.FLIGHTS.read_bytes())
@@ -51,7 +54,7 @@ def test_a_film_moves_without_a_script_and_its_still_does_not(film: Picture) -> 
     assert "animation" not in film.still
     for svg in (film.svg, film.still):
         assert "<script" not in svg
-        assert "@media screen and (prefers-color-scheme: dark)" in svg
+        assert DARK in svg
     assert [text.text for text in labels(film.svg)] == [text.text for text in labels(film.still)]
 
 
@@ -114,3 +117,17 @@ def test_flights_of_another_run_are_refused(
 @pytest.mark.slow
 def test_the_flights_repeat() -> None:
     assert film_flights.flown(STORED.scene, STORED.seed) == STORED
+
+
+def test_a_figure_of_the_paper_stands_alone_under_its_title() -> None:
+    text = paper_blocks.picture("figure-3").svg
+    root = ElementTree.fromstring(text)
+    heads = [label.text for label in labels(text) if label.get("class") == "head"]
+    assert heads == [root.findtext(f"{SVG}title")]
+    assert DARK in text
+
+
+def test_a_picture_of_a_report_has_a_light_and_a_dark_side() -> None:
+    both = pictures.twice((20.0, 10.0), "data:light", "data:dark")
+    images = ElementTree.fromstring(both).iter(f"{SVG}image")
+    assert [image.get("href") for image in images] == ["data:light", "data:dark"]

@@ -32,15 +32,19 @@ class Profile:
 
     def __init__(self, carries: Callable[[Any], bool], rooms: tuple[str, ...] = ("",)) -> None:
         self.carries, self.rooms = carries, tuple(f"{SOURCE}/{room}" for room in rooms)
+        self.counted: dict[object, bool] = {}
         self.classes: set[type] = set()
         self.calls = Counter[object]()
         self.seen = Counter[type]()
 
     def __call__(self, frame: FrameType, event: str, result: Any) -> None:
-        if not frame.f_code.co_filename.startswith(self.rooms):
+        code = frame.f_code
+        if (counted := self.counted.get(code)) is None:
+            counted = self.counted[code] = code.co_filename.startswith(self.rooms)
+        if not counted:
             return
         if event == "call":
-            self.calls[frame.f_code] += 1
+            self.calls[code] += 1
         elif event == "return":
             for value in (frame.f_locals.get("self"), *members(result)):
                 kind = type(value)
@@ -139,8 +143,8 @@ def test_a_fault_s_text_is_read_once_resolved_once_and_passes_five_classes(
 
 def test_an_effect_passes_eight_classes_and_a_question_four(tmp_path: Path) -> None:
     """From the outcomes to the page, those included that hold what holds it."""
-    asked: dict[str, Any] = {"fault": "gain:scale=0.6", "scenes": SCENES}
-    record = audited(tmp_path / "first", **asked)
+    options: dict[str, Any] = {"fault": "gain:scale=0.6", "scenes": SCENES}
+    record = audited(tmp_path / "first", **options)
     (value,) = (effect.value for effect in record.effects if effect.condition == "observer")
     rooms = ("stats", "analyses", "report", "api", "cli")
     effect = Profile(lambda part: value in numbers(part), rooms)
@@ -149,7 +153,7 @@ def test_an_effect_passes_eight_classes_and_a_question_four(tmp_path: Path) -> N
         return any(is_question(part) for part in (holder, *fields(holder)))
 
     questions = Profile(question, rooms)
-    audited(tmp_path / "second", effect, questions, **asked)
+    audited(tmp_path / "second", effect, questions, **options)
     assert {"Contrast", "Effect", "AuditResult"} <= {kind.__name__ for kind in effect.classes}
     assert len(effect.classes) <= 8, effect.classes
     assert {AuditCall, AuditQuestion} <= questions.classes

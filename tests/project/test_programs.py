@@ -1,15 +1,19 @@
-"""Every program that the project ships can be imported, and says what it takes."""
+"""Every program that the project ships can be imported, and every example runs."""
 
 import json
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from subprocess import CompletedProcess
+
+import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = ("benchmarks", "examples", "experiments", "tools")
-PROGRAMS = sorted(
-    str(file.relative_to(ROOT)) for folder in FOLDERS for file in (ROOT / folder).rglob("*.py")
-)
+FILES = [file for folder in FOLDERS for file in (ROOT / folder).rglob("*.py")]
+PROGRAMS = [str(file.relative_to(ROOT)) for file in sorted(FILES, key=lambda f: (f.parent, f))]
+"""Folder by folder."""
 PACKAGES = {
     *("Basilisk", "do_mpc", "gymnasium", "jax", "lerobot", "motulator", "mujoco", "pytorch_mppi"),
     *("opendbc", "rotorpy", "stable_worldmodel", "tensordict", "torch", "torchrl", "torchvision"),
@@ -23,10 +27,15 @@ from importlib.metadata import PackageNotFoundError
 from io import StringIO
 
 root, programs = sys.argv[1], json.loads(sys.argv[2])
-path, problems = sys.path[1:], {}
+path, problems, before = sys.path[1:], {}, None
 for program in programs:
     file = os.path.join(root, program)
-    sys.path[:] = [os.path.dirname(file), root, *path]
+    if (folder := os.path.dirname(file)) != before:
+        for name, module in list(sys.modules.items()):  # another folder may have one of that name
+            if before and (getattr(module, "__file__", None) or "").startswith(before + os.sep):
+                del sys.modules[name]
+        before = folder
+    sys.path[:] = [folder, root, *path]
     with open(file) as source:
         takes_options = "import argparse" in source.read()
     sys.argv = [file, "--help"] if takes_options else [file]
@@ -44,9 +53,6 @@ for program in programs:
     except Exception as error:
         problem = ["fails", f"{type(error).__name__}: {error}"]
     problems[program] = problem
-    for name, module in list(sys.modules.items()):  # another program may have one of that name
-        if (getattr(module, "__file__", None) or "").startswith(os.path.dirname(file) + os.sep):
-            del sys.modules[name]
 print(json.dumps(problems))
 """
 
@@ -66,3 +72,20 @@ def test_every_program_can_be_imported_and_says_what_it_takes(tmp_path: Path) ->
     wrong = {program: problem for program, problem in problems.items() if problem[0]}
     lacking = [["lacks", package] for package in PACKAGES]
     assert {program: problem for program, problem in wrong.items() if problem not in lacking} == {}
+
+
+QUICK = {"own_model.py": ("--episodes", "40", "--epochs", "1")}
+"""Arguments of examples that would take their time without."""
+NAMED = "".join(
+    path.read_text("utf-8")
+    for folder in ("foreign", "learning")
+    for path in (ROOT / "tests" / folder).glob("test_*.py")
+)
+EXAMPLES = [f for f in sorted((ROOT / "examples").glob("*.py")) if f'"{f.name}"' not in NAMED]
+"""Examples that no test of their own runs."""
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.name)
+def test_example_runs(example: Path, run: Callable[..., CompletedProcess[str]]) -> None:
+    done = run(str(example), *QUICK.get(example.name, ()))
+    assert done.returncode == 0, done.stderr

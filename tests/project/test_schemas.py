@@ -14,20 +14,23 @@ RESULTS = [
     for name in ("record", "map", "scan")
     for path in sorted((ROOT / "docs" / "reference").glob(f"*/{name}.json"))
 ]
-ASKED = {"baseline": "old", "repair": "new"}
+VERSIONS = {"baseline": "old", "repair": "new"}
 FITTING = [
-    ("audit-question", ASKED | {"fault": "gain:scale=0.6", "seeds": [0, 1], "thresholds": "1,2"}),
-    ("map-question", ASKED | {"fault": "gain", "against": ["controller", "observer"]}),
+    (
+        "audit-question",
+        VERSIONS | {"fault": "gain:scale=0.6", "seeds": [0, 1], "thresholds": "1,2"},
+    ),
+    ("map-question", VERSIONS | {"fault": "gain", "against": ["controller", "observer"]}),
     ("scan-question", {"variant": "old", "fault": ["gain:scale=1.2"], "seeds": "0,1"}),
-    ("judge-question", ASKED | {"columns": {"scene": "episode"}}),
+    ("judge-question", VERSIONS | {"columns": {"scene": "episode"}}),
     ("judge-row", {"variant": "old", "scene": 7, "success": True, "reward": 0.5}),
 ]
 WRONG = [
-    ("audit-question", ASKED),
-    ("audit-question", ASKED | {"fault": "gain:scale=0.6", "scene": 4}),
-    ("map-question", ASKED | {"fault": "gain"}),
+    ("audit-question", VERSIONS),
+    ("audit-question", VERSIONS | {"fault": "gain:scale=0.6", "scene": 4}),
+    ("map-question", VERSIONS | {"fault": "gain"}),
     ("scan-question", {"variant": "old", "trials": "no"}),
-    ("judge-question", ASKED | {"cluster": "model"}),
+    ("judge-question", VERSIONS | {"cluster": "model"}),
     ("judge-row", {"variant": "old", "scene": 7}),
 ]
 

@@ -6,7 +6,8 @@ session: lines that start with ``$ `` are commands, the lines below each are its
 ``...`` stands for anything; a command without output below only has to succeed. Commands of
 ``faultpath`` and ``python`` are run; the rest (git, make, pip) are set-up and are not. All commands
 share one directory, which holds ``examples/``. The word ``not-run`` after the language
-(```` ```console not-run ````) keeps a block out, for what takes minutes. An audit of every scene of
+(```` ```console not-run ````) keeps a block out, for what takes minutes; with ``refused`` its one
+command ends in the sentence below it. An audit of every scene of
 a library whose output is not shown flies eight of them. Design
 notes are about the past and are left alone.
 """
@@ -37,10 +38,10 @@ OF_ALL_SCENES = re.compile(r"faultpath audit (?!.*--(scenes|study)\b)")
 LOOSELY = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 
 
-def blocks(text: str, language: str) -> Iterator[tuple[str, int]]:
+def blocks(text: str, info: str) -> Iterator[tuple[str, int]]:
     """Yield the text of each fenced block, and how many lines of the document are above it."""
     for match in FENCE.finditer(text):
-        if match["info"].split() == [language]:
+        if match["info"].strip() == info:
             yield match["body"], text.count("\n", 0, match.start("body"))
 
 
@@ -53,10 +54,10 @@ def program(text: str) -> str:
     return "\n".join(lines).rstrip()
 
 
-def session(text: str) -> Iterator[tuple[str, str]]:
+def session(text: str, info: str = "console") -> Iterator[tuple[str, str]]:
     """The console blocks as commands with the output that is shown for each; a backslash at a
     line's end joins it with the next."""
-    for block, _ in blocks(text, "console"):
+    for block, _ in blocks(text, info):
         for part in re.split(r"^\$ ", block.replace("\\\n", ""), flags=re.MULTILINE)[1:]:
             line, _, output = part.partition("\n")
             yield line.strip(), output
@@ -128,3 +129,13 @@ def test_console_of_a_document_runs(
         if output.strip():
             shown = checker.check_output(output, done.stdout, LOOSELY)
             assert shown, f"$ {line}\n{done.stdout}\nis not\n{output}"
+
+
+MISTAKES = list(session(TEXTS[ROOT / "docs" / "faq.md"], "console refused"))
+
+
+@pytest.mark.parametrize(("line", "sentence"), MISTAKES, ids=[text[11:50] for _, text in MISTAKES])
+def test_a_mistake_ends_in_the_sentence_that_the_page_has_for_it(line: str, sentence: str) -> None:
+    ended = faultpath(*shlex.split(line)[1:])
+    assert ended.status == 2
+    assert doctest.OutputChecker().check_output(sentence, ended.err, doctest.ELLIPSIS)

@@ -17,7 +17,7 @@ from packaging.requirements import Requirement
 ROOT = Path(__file__).resolve().parents[2]
 BUILT_FROM = ("pyproject.toml", "README.md", "LICENSE", "src", "examples")
 PIP = (sys.executable, "-m", "pip", "--disable-pip-version-check", "-q")
-ASKED = ("--baseline", "calibrated", "--repair", "blind", "--fault", "gain:scale=0.6")
+VERSIONS = ("--baseline", "calibrated", "--repair", "blind", "--fault", "gain:scale=0.6")
 
 
 def called(*command: str | Path, **environment: str) -> str:
@@ -42,8 +42,8 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("wheel")
     options = ("--no-deps", "--no-build-isolation", "--no-index", "-w", out)
     called(*PIP, "wheel", *options, source, PYTHONPATH="", HATCH_BUILD_HOOK_ENABLE_CUSTOM="")
-    (made,) = out.iterdir()
-    return made
+    (built,) = out.iterdir()
+    return built
 
 
 def test_with_the_hook_and_without_a_compiler_the_wheel_is_pure_too(
@@ -54,12 +54,12 @@ def test_with_the_hook_and_without_a_compiler_the_wheel_is_pure_too(
     monkeypatch.delenv("CXX", raising=False)
     from hatch_build import KernelHook
 
-    said: list[str] = []
+    warnings: list[str] = []
     about: dict[str, Any] = {"artifacts": []}
-    told = SimpleNamespace(display_warning=said.append)
-    KernelHook(str(tmp_path), {}, None, None, "", "wheel", app=told).initialize("", about)
+    app = SimpleNamespace(display_warning=warnings.append)
+    KernelHook(str(tmp_path), {}, None, None, "", "wheel", app=app).initialize("", about)
     assert about == {"artifacts": []}
-    assert said == ["No C++ compiler: the portable path will run instead."]
+    assert warnings == ["No C++ compiler: the portable path will run instead."]
 
 
 def needed(name: str, known: set[str] | None = None) -> set[str]:
@@ -108,16 +108,16 @@ def test_the_engine_is_installed_and_audits_without_compiler_or_extra(
 
     toy = f"{ROOT / 'examples' / 'toy.py'}:create"
     run = tmp_path / "run"
-    flown = ("--library", "carts", "--scenes", "10", "--workers", "1", "--out", run)
-    assert "Correct inputs" in called(command, "audit", toy, *ASKED, *flown, **outside)
+    scenes = ("--library", "carts", "--scenes", "10", "--workers", "1", "--out", run)
+    assert "Correct inputs" in called(command, "audit", toy, *VERSIONS, *scenes, **outside)
     assert (run / "report.html").is_file()
     shown = called(command, "demo", "--out", tmp_path / "demo", **outside)
     assert "Do not choose by the fault at the observer alone" in shown
     assert (tmp_path / "demo" / "report.html").is_file()
 
     page = (ROOT / "docs" / "faq.md").read_text("utf-8")
-    found = re.search(r"```console refused-by-the-engine\n\$ (.*)\n(.*)\n```", page)
-    assert found is not None
-    wanted = [command, *found[1].split()[1:]]
-    done = subprocess.run(wanted, capture_output=True, text=True, env={**os.environ, **outside})
-    assert (done.returncode, done.stderr.strip()) == (2, found[2])
+    block = re.search(r"```console refused-by-the-engine\n\$ (.*)\n(.*)\n```", page)
+    assert block is not None
+    line = [command, *block[1].split()[1:]]
+    done = subprocess.run(line, capture_output=True, text=True, env={**os.environ, **outside})
+    assert (done.returncode, done.stderr.strip()) == (2, block[2])

@@ -143,7 +143,7 @@ def _stopping(after: int):
     return stopping
 
 
-def test_a_few_scenes_of_a_later_treatment_are_flown_at_other_places_than_before(tmp_path):
+def test_a_few_scenes_of_a_later_treatment_run_at_other_places_than_before(tmp_path):
     result = run_plan(_plan("", count=12, block="10"), tmp_path, workers=0)
     assert [each.why for each in result.rechecks].count("sample") == 1
     few = next(each for each in result.rechecks if each.why == "sample")

@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 
 from faultpath.core.errors import SystemMistake, UserError
-from faultpath.run.attempt import Done, attempt
-from faultpath.run.plan import SystemSpec, Treatment
+from faultpath.run.plan import SystemSpec
 from faultpath.run.registry import load_system
 from faultpath.run.shown import SystemShown, system_shown
 from faultpath.system import FloorPlan, Metric, Pillar, Prism, System
@@ -157,19 +156,3 @@ def test_the_size_of_a_block_follows_from_that_of_the_library(toy, scenes, state
     mine = type("Mine", (toy,), {"block_size": stated})()
     assert mine.scenes_a_block(scenes) == size
     assert System.scenes_a_block(mine, scenes) == (stated or 20)
-
-
-def test_a_scene_comes_out_the_same_in_a_block_of_any_size(toy) -> None:
-    system, scenes = toy(), [f"cart/{i:03d}" for i in range(50)]
-
-    def trials(size: int) -> list[tuple[object, ...]]:
-        blocks = [scenes[first : first + size] for first in range(0, len(scenes), size)]
-        replies = [attempt(system, Treatment(variant="calibrated"), block) for block in blocks]
-        assert all(isinstance(reply, Done) for reply in replies), replies
-        return [
-            (replace(outcome, trace=None), outcome.trace.tobytes())
-            for reply in replies
-            for outcome in reply.outcomes
-        ]
-
-    assert trials(50) == trials(20) == trials(1)

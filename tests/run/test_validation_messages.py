@@ -54,6 +54,13 @@ def test_a_format_that_no_version_wrote_is_refused(model: type, number: int) -> 
     assert ("format",) in [each["loc"] for each in caught.value.errors()]
 
 
+def test_a_copy_of_a_result_gets_no_field_that_is_not_declared() -> None:
+    thrust = Thrust(column="x")
+    assert thrust.model_copy(update={"column": "y"}) == Thrust(column="y")
+    with pytest.raises(TypeError, match="Thrust has no field 'colum'"):
+        thrust.model_copy(update={"colum": "y"})
+
+
 def misfit(model: type, given: object) -> Misfit:
     with pytest.raises(ValidationError) as caught:
         model.model_validate(given)

@@ -134,7 +134,7 @@ def _network(kind):
 
 
 def _kept(broken, scenes):
-    """Say whether these scenes were flown in this process, for one that then reads no more."""
+    """Say whether these scenes ran in this process, for one that then reads no more."""
     if broken != "keeps":
         return False
     kept = scenes in _SEEN

@@ -71,21 +71,21 @@ def kept(episode):
     return not episode.terminated and len(episode.rewards) == episode.info["patience"]
 
 
-def plant(environment=Walk, **given):
-    given = {"observes": {"place": 0}, "steps": 20, "succeeded": kept} | given
-    return GymnasiumPlant(environment, action="push", **given)
+def plant(environment=Walk, **options):
+    options = {"observes": {"place": 0}, "steps": 20, "succeeded": kept} | options
+    return GymnasiumPlant(environment, action="push", **options)
 
 
-def functions(start, step, action="push", steps=2, succeeded=lambda episode: True, **given):
+def functions(start, step, action="push", steps=2, succeeded=lambda episode: True, **options):
     """Return a plant of plain functions in which every scene succeeds."""
-    given = {"dt_s": 0.1, "steps": steps, "succeeded": succeeded} | given
-    return FunctionPlant(start, step, action=action, **given)
+    options = {"dt_s": 0.1, "steps": steps, "succeeded": succeeded} | options
+    return FunctionPlant(start, step, action=action, **options)
 
 
-def system(made, modules=None, **given):
-    units = {"place": "m", "push": "m", "slope": "m"} | given.pop("units", {})
-    return ComposedSystem("walk", made, {"only": modules or [Steer()]}, units, **given)
+def system(world, modules=None, **options):
+    units = {"place": "m", "push": "m", "slope": "m"} | options.pop("units", {})
+    return ComposedSystem("walk", world, {"only": modules or [Steer()]}, units, **options)
 
 
-def fly(built, scenes=SCENES, variant="only", seed=0):
+def trials(built, scenes=SCENES, variant="only", seed=0):
     return built.run(variant, scenes, taps_of(built, Treatment(variant=variant), scenes), seed)

@@ -16,11 +16,11 @@ from faultpath.core.errors import SystemMistake, UserError
 )
 def test_what_only_the_fault_brings_is_found_under_the_fault(broken, failing, sentence):
     assert failed(check(broken=broken)) == {}
-    found = failed(check(broken=broken, fault="range:scale=0.1"))
-    assert list(found) == failing
-    (said,) = found[failing[-1]]
-    assert said.startswith("Variant 'bare', under the fault (pilot): ")
-    assert sentence in said
+    failures = failed(check(broken=broken, fault="range:scale=0.1"))
+    assert list(failures) == failing
+    (failure,) = failures[failing[-1]]
+    assert failure.startswith("Variant 'bare', under the fault (pilot): ")
+    assert sentence in failure
 
 
 def test_a_fault_that_cannot_act_is_refused_and_one_that_changes_nothing_remarked():
@@ -44,19 +44,21 @@ def test_a_fault_that_cannot_act_is_refused_and_one_that_changes_nothing_remarke
 )
 def test_the_cause_of_what_does_not_repeat_follows_from_runs_in_new_processes(broken, cause):
     report = check(broken=broken, workers=1, variants=("bare",), scenes=2)
-    found = {each.name: each for each in report.checks}
-    (said,) = found["determinism"].failures
-    assert cause in said
-    assert found["pairing"].status == found["scene independence"].status == "not judged"
-    assert [name for name, each in found.items() if each.failures] == ["determinism"]
+    checks = {each.name: each for each in report.checks}
+    (failure,) = checks["determinism"].failures
+    assert cause in failure
+    assert checks["pairing"].status == checks["scene independence"].status == "not judged"
+    assert [name for name, each in checks.items() if each.failures] == ["determinism"]
 
 
 def test_a_reader_that_has_its_value_from_elsewhere_fails_and_one_that_ignores_it_does_not():
-    (said,) = failed(check(LOOPS, broken="goes round"))["fault delivery"]
+    (failure,) = failed(check(LOOPS, broken="goes round"))["fault delivery"]
     lead = (
         "Injection point position -> pilot.feedback of variant 'plain', faulted in 4 trials, had no"
     )
-    assert said.startswith(f"{lead} effect, and 'pilot' wrote another order at step 1 in scene 'c'")
+    assert failure.startswith(
+        f"{lead} effect, and 'pilot' wrote another order at step 1 in scene 'c'"
+    )
     for broken in ("goes round, still", "ignores"):
         report = check(LOOPS, broken=broken)
         assert failed(report) == {}
@@ -74,9 +76,9 @@ def test_a_loop_of_ones_own_fails_where_an_estimator_reads_past_its_tap(tmp_path
         ),
         "utf-8",
     )
-    (said,) = failed(check(f"{mine}:create", library="floors"))["fault delivery"]
-    assert "range -> speedometer.difference" in said
-    assert "'speedometer' wrote another range_rate" in said
+    (failure,) = failed(check(f"{mine}:create", library="floors"))["fault delivery"]
+    assert "range -> speedometer.difference" in failure
+    assert "'speedometer' wrote another range_rate" in failure
 
 
 def test_scenes_are_drawn_from_the_whole_library():

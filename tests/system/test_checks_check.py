@@ -49,13 +49,13 @@ NONE_ENDS = ("of the future", "another source", "shape")
 def test_a_broken_system_fails_its_check_and_no_other(broken):
     if "network" in broken:
         pytest.importorskip("torch")
-    found = failed(check(broken=broken))
+    failures = failed(check(broken=broken))
     name, sentence = SAID[broken]
-    found.pop("trials end", None) if broken in NONE_ENDS else None
-    found.pop("determinism", None) if broken == "keeps" else None  # what it reads differs too
-    assert set(found) == {name}, found
-    assert any(sentence in said for said in found[name]), found[name]
-    assert all(said.endswith(".") for said in found[name])
+    failures.pop("trials end", None) if broken in NONE_ENDS else None
+    failures.pop("determinism", None) if broken == "keeps" else None  # what it reads differs too
+    assert set(failures) == {name}, failures
+    assert any(sentence in failure for failure in failures[name]), failures[name]
+    assert all(failure.endswith(".") for failure in failures[name])
 
 
 @pytest.mark.parametrize(
@@ -72,8 +72,8 @@ def test_where_no_trial_ends_that_check_fails_and_names_the_one_to_see():
     trials, *others = check(broken="shape").checks
     assert {other.says for other in others} == {"no variant ran to its end"}
     assert (trials.status, trials.says) == ("failed", "none did; see *shape and unit*")
-    (said,) = trials.failures
-    assert said.startswith("No trial of any variant ended: correct first what *shape and unit*")
+    (failure,) = trials.failures
+    assert failure.startswith("No trial of any variant ended: correct first what *shape and unit*")
 
 
 @pytest.mark.parametrize("also", [(), ("pilot.approach",)], ids=["instead", "too"])
@@ -98,15 +98,15 @@ def test_a_fault_that_alters_another_tap_is_seen_without_the_taps_own_counts(mon
         "altered a reading"
     )
     failures = failed(check(broken=""))["fault delivery"]
-    assert any(said.startswith(f"{lead} at range -> guard.limit too") for said in failures)
+    assert any(failure.startswith(f"{lead} at range -> guard.limit too") for failure in failures)
 
 
 def test_an_error_is_told_with_its_line_and_an_if_on_a_reading_with_what_to_take():
     trials = check(broken="raises").checks[0]
     assert (trials.status, trials.says) == ("failed", "none did")
-    (said,) = trials.failures
+    (failure,) = trials.failures
     assert re.search(
-        r"ValueError: no air \(\S*broken\.py, line \d+\) in scene 'w2'; correct the system", said
+        r"ValueError: no air \(\S*broken\.py, line \d+\) in scene 'w2'; correct the system", failure
     )
     assert "np.where" in remedy("ValueError: The truth value of an array is ambiguous")
 
@@ -200,12 +200,14 @@ def test_rounding_is_told_from_dependence_by_its_size(kind, status, remark):
     """A sum over scenes beside it may change a last digit; that is no shared state."""
     if "network" in kind:
         pytest.importorskip("torch")
-    (found,) = (each for each in check(broken=kind).checks if each.name == INDEPENDENCE)
-    assert found.status == status
-    assert re.search(remark, " ".join(found.remarks))
+    (independence,) = (
+        result for result in check(broken=kind).checks if result.name == INDEPENDENCE
+    )
+    assert independence.status == status
+    assert re.search(remark, " ".join(independence.remarks))
 
 
-def test_a_system_that_takes_one_scene_at_a_time_flies_all_that_are_asked_for():
+def test_a_system_that_takes_one_scene_at_a_time_runs_all_that_are_asked_for():
     report = check(broken="one at a time")
     assert failed(report) == {}
     assert len(report.scenes) == 4
@@ -220,24 +222,26 @@ def test_a_reader_that_ignores_its_reading_is_remarked_and_not_failed():
 
 
 @pytest.mark.parametrize(
-    ("broken", "says"),
+    ("broken", "sentence"),
     [
         ("undeclared port", "add Port('position', 'other') to its reads."),
         ("undeclared truth", "the plant's truth 'true_place'"),
     ],
 )
-def test_a_modules_ports_are_what_it_looks_at(broken, says):
-    found = failed(check(LOOPS, broken=broken))
-    assert set(found) == {"trials end", "declared reads"}
-    assert any("'pilot'" in each and says in each for each in found["declared reads"]), found
+def test_a_modules_ports_are_what_it_looks_at(broken, sentence):
+    failures = failed(check(LOOPS, broken=broken))
+    assert set(failures) == {"trials end", "declared reads"}
+    assert any(
+        "'pilot'" in failure and sentence in failure for failure in failures["declared reads"]
+    ), failures
 
 
 @pytest.mark.parametrize(
-    ("question", "says"),
+    ("question", "sentence"),
     [({"variants": ("bear",)}, "did you mean 'bare'"), ({"scenes": 7}, "1 to 6")],
 )
-def test_what_cannot_be_checked_is_refused(question, says):
-    with pytest.raises(UserError, match=says):
+def test_what_cannot_be_checked_is_refused(question, sentence):
+    with pytest.raises(UserError, match=sentence):
         check(**question)
 
 
@@ -260,7 +264,7 @@ def test_a_file_that_is_read_undeclared_fails_a_check_of_its_own(tmp_path) -> No
         tmp_path, f"def run(self, *asked):\n    {read}\n    return super().run(*asked)"
     )
     os.utime(tmp_path / "gain.txt", (0, 0))
-    found = failed(check(system, library="carts"))
-    assert set(found) == {"trials end", "data files"}
-    (said,) = found["data files"]
-    assert "reads gain.txt, which it does not declare" in said
+    failures = failed(check(system, library="carts"))
+    assert set(failures) == {"trials end", "data files"}
+    (failure,) = failures["data files"]
+    assert "reads gain.txt, which it does not declare" in failure

@@ -29,20 +29,20 @@ def trace(name, variant, fault=None, library="selection", **options):
 
 
 def test_it_says_who_read_what_and_when_and_stops_after_its_steps():
-    system, found = trace(TOY, "calibrated")
-    assert {read.step for read in found.reads} == {0, 1, 2}
-    assert {read.reader for read in found.reads} == system.variants["calibrated"].readers
-    late = [read.valid_step for read in found.reads if read.reader == "observer.executed"]
+    system, traced = trace(TOY, "calibrated")
+    assert {read.step for read in traced.reads} == {0, 1, 2}
+    assert {read.reader for read in traced.reads} == system.variants["calibrated"].readers
+    late = [read.valid_step for read in traced.reads if read.reader == "observer.executed"]
     assert late == [-1, 0, 1]
-    assert found.reconstructed == {"observed_slope": ("observer", ("gain", "push", "velocity"))}
-    assert found.findings == ()
+    assert traced.reconstructed == {"observed_slope": ("observer", ("gain", "push", "velocity"))}
+    assert traced.findings == ()
 
 
 def test_a_run_of_ones_own_is_traced_and_a_fault_shows_whom_it_reaches():
-    _, found = trace(DOCK, "ranges", "range:scale=0.7@speedometer", library="floors")
-    altered = {read.reader: read.altered_by for read in found.reads if read.altered_by}
+    _, traced = trace(DOCK, "ranges", "range:scale=0.7@speedometer", library="floors")
+    altered = {read.reader: read.altered_by for read in traced.reads if read.altered_by}
     assert altered == {"speedometer.difference": ("scaled by 0.7",)}
-    table = trace_table(found)
+    table = trace_table(traced)
     assert table.columns[3:5] == ("at steps", "of steps")
     assert table.notes[0].startswith("At steps: ")
     (speed,) = (line for line in table.lines if line.label == "approach.feedback")
@@ -52,7 +52,7 @@ def test_a_run_of_ones_own_is_traced_and_a_fault_shows_whom_it_reaches():
 
 
 @pytest.mark.parametrize(
-    ("name", "variant", "broken", "said"),
+    ("name", "variant", "broken", "sentence"),
     [
         (BROKEN, "bare", "nosy", r"tap range -> guard.limit: this variant has no such reader"),
         (BROKEN, "guarded", "deaf", r"declares that guard.limit reads 'range', but in the first 3"),
@@ -66,14 +66,14 @@ def test_a_run_of_ones_own_is_traced_and_a_fault_shows_whom_it_reaches():
         ),
     ],
 )
-def test_what_is_not_as_declared_is_found(name, variant, broken, said):
+def test_what_is_not_as_declared_is_found(name, variant, broken, sentence):
     if broken in ("of the future", "another source"):  # nothing was read before
-        with pytest.raises(UserError, match=said):
+        with pytest.raises(UserError, match=sentence):
             trace(name, variant, broken=broken)
         return
-    _, found = trace(name, variant, broken=broken)
-    assert len(found.findings) == 1
-    assert re.search(said, describe_read(found.findings[0]))
+    _, traced = trace(name, variant, broken=broken)
+    assert len(traced.findings) == 1
+    assert re.search(sentence, describe_read(traced.findings[0]))
 
 
 def test_a_privileged_read_without_permission_is_found():
@@ -94,15 +94,15 @@ def test_a_privileged_read_without_permission_is_found():
 
 
 @pytest.mark.parametrize(
-    ("more", "said"),
+    ("more", "sentence"),
     [
         ({"variant": "blinded"}, "unknown variant 'blinded'; did you mean 'blind'?"),
         ({"variant": "blind", "scene": "cart/1"}, "library 'carts': unknown scene 'cart/1'"),
     ],
 )
-def test_what_cannot_be_traced_is_refused(more, said):
+def test_what_cannot_be_traced_is_refused(more, sentence):
     system, _ = trace(TOY, "blind")
-    with pytest.raises(UserError, match=re.escape(said)):
+    with pytest.raises(UserError, match=re.escape(sentence)):
         trace_system(system, SystemSpec(name=TOY), TraceQuestion(**more))
 
 

@@ -98,25 +98,27 @@ MISTAKES = {
 
 @pytest.fixture
 def own(tmp_path):
-    def made(before: str, after: str):
+    def load(before: str, after: str):
         text = OWN.read_text().replace('"NAME"', '"own"')
         assert before in text
         file = tmp_path / "own.py"
         file.write_text(text.replace(before, after, 1))
         return load_system(SystemSpec(name=f"{file}:create"))
 
-    return made
+    return load
 
 
-@pytest.mark.parametrize(("before", "after", "said"), MISTAKES.values(), ids=MISTAKES.keys())
-def test_a_wrong_argument_is_told_with_its_line_and_what_to_give(own, before, after, said) -> None:
-    with pytest.raises(SystemMistake, match=said) as mistake:
+@pytest.mark.parametrize(("before", "after", "sentence"), MISTAKES.values(), ids=MISTAKES.keys())
+def test_a_wrong_argument_is_told_with_its_line_and_what_to_give(
+    own, before, after, sentence
+) -> None:
+    with pytest.raises(SystemMistake, match=sentence) as mistake:
         own(before, after)
     assert "own.py, line " in (mistake.value.location or location(mistake.value))
 
 
 @pytest.mark.parametrize(
-    ("before", "after", "said"),
+    ("before", "after", "sentence"),
     [
         ("episode: missed_m(episode) <", "episode: 0 * missed_m(episode) +", "`succeeded` ret"),
         (
@@ -126,10 +128,10 @@ def test_a_wrong_argument_is_told_with_its_line_and_what_to_give(own, before, af
         ),
     ],
 )
-def test_what_is_neither_true_nor_false_is_told_with_its_line(own, before, after, said) -> None:
+def test_what_is_neither_true_nor_false_is_told_with_its_line(own, before, after, sentence) -> None:
     system = own(before, after)
     run = run_block(system, BlockSpec(Treatment(variant="typical", seed=0), ("seed/0",)))
-    assert re.search(f"own.py, line [0-9]+: {said}.* it must return true or false", run.error)
+    assert re.search(f"own.py, line [0-9]+: {sentence}.* it must return true or false", run.error)
 
 
 def test_seeds_may_be_an_array(own) -> None:

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from gym_toys import SCENES, Steer, fly, functions
+from gym_toys import SCENES, Steer, functions, trials
 
 from faultpath.core.errors import SystemMistake
 from faultpath.system import ComposedSystem, Status, writes
@@ -20,14 +20,14 @@ def step(state, push, rng):
     return {"at": at, "clock": state["clock"] + 1}
 
 
-def cart(**given):
+def cart(**options):
     episodes = []
 
     def note(episode):
         episodes.append(episode)
         return not episode.terminated
 
-    more = {"over": lambda state: abs(state["at"]) > 1.5, "succeeded": note} | given
+    more = {"over": lambda state: abs(state["at"]) > 1.5, "succeeded": note} | options
     observes = {"place": "at", "clock": "clock"}
     plant = functions(start, step, steps=6, dt_s=0.5, observes=observes, **more)
     built = ComposedSystem("cart", plant, {"only": [Steer()]}, UNITS)
@@ -37,7 +37,7 @@ def cart(**given):
 
 def test_a_scene_ends_where_over_says_so_and_is_frozen():
     built, episodes = cart()
-    outcomes = fly(built)
+    outcomes = trials(built)
     assert {o.status for o in outcomes} == {Status.SUCCESS, Status.CRASH}
     assert sorted(len(e.rewards) * 0.5 for e in episodes) == sorted(o.time_s for o in outcomes)
     assert all(list(e["clock"]) == list(range(len(e.rewards) + 1)) for e in episodes)
@@ -47,12 +47,12 @@ def test_a_scene_ends_where_over_says_so_and_is_frozen():
         assert beyond[-1] == episode.terminated
 
 
-def test_noise_belongs_to_scene_seed_and_step_and_not_to_who_flies_beside():
+def test_noise_belongs_to_scene_seed_and_step_and_not_to_who_runs_beside():
     built, _ = cart()
-    by_scene = {o.scene: o for o in fly(built)}
+    by_scene = {o.scene: o for o in trials(built)}
     mixed = [SCENES[i] for i in (3, 1)]
-    assert fly(built, mixed) == [by_scene[scene] for scene in mixed]
-    other = fly(built, mixed, seed=1)
+    assert trials(built, mixed) == [by_scene[scene] for scene in mixed]
+    other = trials(built, mixed, seed=1)
     assert [o.initial_hash for o in other] == [by_scene[s].initial_hash for s in mixed]
     assert all(o.disturbance_hash != by_scene[o.scene].disturbance_hash for o in other)
 
@@ -83,16 +83,16 @@ def test_a_module_stands_in_for_a_source_of_several_numbers():
     assert built.interface.reconstructs == {"guess": ("guessed",)}
     assert built.variants["seeing"].bindings == {"place": "seen"}
     assert built.variants["guessing"].bindings == {"place": "guessed"}
-    assert len(fly(built, variant="guessing")) == len(SCENES)
+    assert len(trials(built, variant="guessing")) == len(SCENES)
 
 
 def test_the_hash_of_a_state_that_holds_an_object_does_not_depend_on_places() -> None:
-    def held(name: str, module: str) -> object:
+    def instance(name: str, module: str) -> object:
         return type(name, (), {"__module__": module})()
 
-    one, two = held("Craft", "faultpath_system_a1"), held("Craft", "faultpath_system_b2")
+    one, two = instance("Craft", "faultpath_system_a1"), instance("Craft", "faultpath_system_b2")
     assert hashed({"craft": one, "x": 1.0}) == hashed({"craft": two, "x": 1.0})
-    assert hashed({"craft": one}) != hashed({"craft": held("Boat", "faultpath_system_a1")})
+    assert hashed({"craft": one}) != hashed({"craft": instance("Boat", "faultpath_system_a1")})
 
 
 def test_a_key_that_the_state_has_not_is_told_with_those_that_it_has():
@@ -115,4 +115,4 @@ def test_a_state_may_hold_what_has_another_shape_in_each_scene():
         len({len(world.observation["obstacles"]) for world in map(plant.world, SCENES, [0] * 6)})
         > 1
     )
-    assert [outcome.failed for outcome in fly(built)] == [False] * len(SCENES)
+    assert [outcome.failed for outcome in trials(built)] == [False] * len(SCENES)

@@ -4,7 +4,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from gym_toys import SCENES, Keyed, Steer, Walk, fly, plant, system
+from gym_toys import SCENES, Keyed, Steer, Walk, plant, system, trials
 
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.loop import Port
@@ -29,23 +29,23 @@ def test_a_finished_episode_is_frozen_as_it_ended():
     seen = plant(observes={"place": 0, "clock": 1}, succeeded=lambda e: episodes.append(e) or True)
     built = system(seen, [watch], units={"clock": "1"})
     clocks.clear()
-    ends = [round(o.time_s / 0.5) for o in fly(built)]
+    ends = [round(o.time_s / 0.5) for o in trials(built)]
     assert all(e.returned == -abs(e["place"][1:]).sum() for e in episodes)
     delivered = np.array(clocks).T.tolist()
     assert delivered == [[min(step, end) for step in range(len(clocks))] for end in ends]
 
 
 def test_an_environment_of_its_own_is_never_moved_beyond_its_end():
-    made = []
+    walks = []
 
     def make():
-        made.append(Walk())
-        return made[-1]
+        walks.append(Walk())
+        return walks[-1]
 
     built = system(plant(make))
-    made.clear()
-    ends = [round(o.time_s / 0.5) for o in fly(built)]
-    assert [each.calls for each in made] == [["reset", *["step"] * end] for end in ends]
+    walks.clear()
+    ends = [round(o.time_s / 0.5) for o in trials(built)]
+    assert [walk.calls for walk in walks] == [["reset", *["step"] * end] for end in ends]
 
 
 def test_what_runs_is_the_interface():
@@ -57,8 +57,8 @@ def test_what_runs_is_the_interface():
         reads = frozenset({Port("place", "feedback"), Port("slope", "model")})
 
     built = system(plant(setup=setup, observes={"place": slice(0, 1)}), [Knowing()])
-    found = {s.name: (s.shape, s.unit, s.provenance.value) for s in built.interface.sources}
-    assert found == {
+    sources = {s.name: (s.shape, s.unit, s.provenance.value) for s in built.interface.sources}
+    assert sources == {
         "place": ((1,), "m", "measured"),
         "push": ((1,), "m", "commanded"),
         "slope": ((), "m", "estimated"),
@@ -72,7 +72,7 @@ def test_scenes_set_up_in_another_way_are_no_pair():
         env.unwrapped.slope = rng.uniform(-width, width)
 
     def disturbances(width):
-        return [o.disturbance_hash for o in fly(system(plant(setup=partial(setup, width))))]
+        return [o.disturbance_hash for o in trials(system(plant(setup=partial(setup, width))))]
 
     def drawn_twice(env, rng):
         setup(0.1, env, rng)
@@ -80,7 +80,7 @@ def test_scenes_set_up_in_another_way_are_no_pair():
 
     assert disturbances(0.1) == disturbances(0.1)
     assert len(set(disturbances(0.1))) == len(SCENES)
-    twice = [o.disturbance_hash for o in fly(system(plant(setup=drawn_twice)))]
+    twice = [o.disturbance_hash for o in trials(system(plant(setup=drawn_twice)))]
     assert not set(twice) & set(disturbances(0.1))
 
 
@@ -129,16 +129,16 @@ def test_what_disturbs_a_step_is_drawn_by_scene_seed_and_step():
 
     built = system(plant(on_step=gust))
     drawn.clear()
-    first = fly(built, SCENES[:1])
+    first = trials(built, SCENES[:1])
     alone = drawn.copy()
     assert [step for _, step in alone] == list(range(len(alone)))
     assert len({slope for slope, _ in alone}) == len(alone) > 1
     drawn.clear()
-    both = fly(built, SCENES[1::-1])
+    both = trials(built, SCENES[1::-1])
     assert both[1] == first[0]
     assert set(alone) < set(drawn)
     drawn.clear()
-    again = fly(built, SCENES[:1], seed=1)
+    again = trials(built, SCENES[:1], seed=1)
     assert not set(alone) & set(drawn)
     assert again[0].disturbance_hash != first[0].disturbance_hash
 
@@ -147,13 +147,13 @@ def test_what_is_traced_and_rendered_is_kept_for_the_player():
     def rod(env):
         return [(0, 0), (env.unwrapped.at, 1)]
 
-    made = system(
+    built = system(
         plant(trace=lambda env: [env.unwrapped.at], render=rod, observes={"place": slice(0, 2)}),
         units={"place": {"unit": "m, 1", "components": ("where", "clock")}},
         modules=[Ahead()],
     )
-    found = run_block(made, BlockSpec(Treatment(variant="only", seed=0), SCENES[:2], signals=True))
-    for outcome, signals in zip(found.outcomes, found.signals, strict=True):
+    block = run_block(built, BlockSpec(Treatment(variant="only", seed=0), SCENES[:2], signals=True))
+    for outcome, signals in zip(block.outcomes, block.signals, strict=True):
         named = {each.name: each for each in signals}
         assert named["place"].parts == ("where", "clock")
         assert np.array_equal(named[DRAWN].values[:, 2], named["place"].values[:, 0])
@@ -199,7 +199,7 @@ def again(place, push):
 
 
 @pytest.mark.parametrize(
-    ("make", "said"),
+    ("make", "sentence"),
     [
         (lambda: plant(observes={"place": 7}), "holds no such part"),
         (lambda: plant(observes={"place": "at"}), "holds no such part"),
@@ -213,20 +213,23 @@ def again(place, push):
         (lambda: measured({"plce": "m"}), "units names 'plce', which is no .*did you mean 'place'"),
         (lambda: system(plant(), [look]), "'look': unknown source 'eye'; known:"),
         (lambda: system(plant(), [again]), "before the first step"),
-        (lambda: fly(system(plant(), [whole])), r"shape \[1\], and.* of shape \[2\]"),
-        (lambda: fly(system(plant(Keyed, observes={"place": ("at", 0)}))), "whole numbers.*float"),
-        (lambda: fly(system(plant(succeeded=lambda e: None))), "returned None of an episode"),
-        (lambda: fly(system(plant(succeeded=lambda e: e["x"]))), "unknown source 'x'"),
-        (lambda: fly(system(plant()), ["a"]), "scene 'a' names no seed"),
+        (lambda: trials(system(plant(), [whole])), r"shape \[1\], and.* of shape \[2\]"),
+        (
+            lambda: trials(system(plant(Keyed, observes={"place": ("at", 0)}))),
+            "whole numbers.*float",
+        ),
+        (lambda: trials(system(plant(succeeded=lambda e: None))), "returned None of an episode"),
+        (lambda: trials(system(plant(succeeded=lambda e: e["x"]))), "unknown source 'x'"),
+        (lambda: trials(system(plant()), ["a"]), "scene 'a' names no seed"),
         (
             lambda: system(plant(), units={"place": {"unit": "m", "components": ("a", "b")}}),
             "'place' has 2 components",
         ),
-        (lambda: fly(system(plant(trace=lambda env: []))), "`trace` returned 0 numbers"),
+        (lambda: trials(system(plant(trace=lambda env: []))), "`trace` returned 0 numbers"),
     ],
 )
-def test_mistakes_are_told_in_a_sentence(make, said):
-    with pytest.raises(SystemMistake, match=said):
+def test_mistakes_are_told_in_a_sentence(make, sentence):
+    with pytest.raises(SystemMistake, match=sentence):
         make()
 
 
@@ -263,13 +266,13 @@ def made() -> GymnasiumPlant:
 
 
 def test_scenes_are_the_same_wherever_the_file_of_a_system_lies(tmp_path):
-    """Their hash is in records; with another one a run could be flown again in its folder only."""
-    made = []
+    """Their hash is in records; with another one a run could be run again in its folder only."""
+    plants = []
     for folder in ("here", "there"):
         (tmp_path / folder).mkdir()
         (tmp_path / folder / "wrapped.py").write_text(WRAPPED)
-        made += load_parts([f"{tmp_path / folder / 'wrapped.py'}:made"], (EpisodePlant,)).values()
-    here, there = (make().identity for make in made)
+        plants += load_parts([f"{tmp_path / folder / 'wrapped.py'}:made"], (EpisodePlant,)).values()
+    here, there = (make().identity for make in plants)
     assert "faultpath_system_:Own" in here
     assert "function" in here
     assert here == there

@@ -51,8 +51,8 @@ def test_a_number_that_is_given_is_one_value_for_every_scene():
     def columns(now, scale):
         return now * scale[:, 0]
 
-    said = r"test_\w+\.py, line \d+: module 'columns' fails \(TypeError: .*one number for every "
-    with pytest.raises(SystemMistake, match=f"{said}scene as its scale, .* one value a scene"):
+    start = r"test_\w+\.py, line \d+: module 'columns' fails \(TypeError: .*one number for every "
+    with pytest.raises(SystemMistake, match=f"{start}scene as its scale, .* one value a scene"):
         columns.given(scale=1.0).step(Inputs("columns", 0, {at: np.ones(3)}, {}, running), None)
     with pytest.raises(TypeError):  # what fails later had a first step that went well
         columns.given(scale=1.0).step(Inputs("columns", 1, {at: np.ones(3)}, {}, running), None)

@@ -59,9 +59,9 @@ def test_what_is_read_is_delivered_and_all_else_stays_shared():
     module = writes("voltage", of=make)(lambda control, current: control.command(current))
     assert module.reads == {Port("flux", "control.flux"), Port("current", "current")}
     assert module.reader(Port("flux", "control.flux")) == "control.flux"
-    given = delivered(current=("current", [0.0, 1.0]), flux=("control.flux", [1.0, 2.0]))
+    readings = delivered(current=("current", [0.0, 1.0]), flux=("control.flux", [1.0, 2.0]))
     memory = module.begin(Batch(("a", "b"), 0, 0.1))
-    outputs, memory = module.step(Inputs("module", 0, given, {}), memory)
+    outputs, memory = module.step(Inputs("module", 0, readings, {}), memory)
     assert outputs["voltage"].tolist() == [0.25 * 1.0, 0.25 * 2.1]
     stand_in = memory[0].objects.par
     assert isinstance(stand_in, Parameters)
@@ -73,19 +73,19 @@ def test_what_is_read_is_delivered_and_all_else_stays_shared():
 
 
 def test_an_ended_scene_is_not_asked_any_more():
-    asked = []
+    currents = []
 
     def count(_, current):
-        asked.append(float(current))
+        currents.append(float(current))
         return current
 
     module = writes("seen", of=SimpleNamespace)(count)
     memory = module.begin(Batch(("a", "b"), 0, 0.1))
     for step, running in enumerate(([True, True], [False, True])):
-        given = delivered(current=("current", [1.0 + step, 5.0 + step]))
-        inputs = Inputs("module", step, given, {}, np.array(running))
+        readings = delivered(current=("current", [1.0 + step, 5.0 + step]))
+        inputs = Inputs("module", step, readings, {}, np.array(running))
         outputs, memory = module.step(inputs, memory)
-    assert asked == [1.0, 5.0, 6.0]
+    assert currents == [1.0, 5.0, 6.0]
     assert outputs["seen"].tolist() == [1.0, 6.0]
 
 
@@ -101,8 +101,8 @@ def test_a_mapping_is_delivered_however_it_is_read():
         return par["mass"]
 
     module = writes("out", of=make)(read)
-    given = {Port("mass", "control.mass"): np.array([4.0])}
-    module.step(Inputs("module", 0, given, {}), module.begin(Batch(("a",), 0, 0.1)))
+    readings = {Port("mass", "control.mass"): np.array([4.0])}
+    module.step(Inputs("module", 0, readings, {}), module.begin(Batch(("a",), 0, 0.1)))
     both = {"mass": 4.0, "treatment": 0.2}
     assert (seen.pop("copied"), seen.pop("spread")) == (both, both)
     assert seen == {"item": 4.0, "get": 4.0, "missing": 7, "values": [4.0, 0.2]}
@@ -131,10 +131,10 @@ def test_mistakes_are_told_in_a_sentence():
             return self.mass
 
     def bound(rebind):
-        made = Solves()
-        seen = tapped(made, "mass", at="filter")
-        made.solver.f = seen.f if rebind else made.f
-        return seen
+        solving = Solves()
+        stand_in = tapped(solving, "mass", at="filter")
+        solving.solver.f = stand_in.f if rebind else solving.f
+        return stand_in
 
     with pytest.raises(SystemMistake, match=r"past its taps: Solves\.solver\.f\.__self__ is the"):
         writes("out", of=lambda: bound(False))(lambda made: made.solver.f())
@@ -176,17 +176,17 @@ def system(**variants):
 
 @pytest.mark.usefixtures("without_pages")
 def test_parts_inside_one_module_are_readers_of_their_own():
-    made = system(fixed=drive(0.0), slow=drive(0.0, late=True))
-    assert set(made.interface.channel("flux").readers) == {"observer.flux", "control.flux"}
-    found = audit(made, baseline="fixed", repair="slow", fault="flux:scale=3", scenes=8)
-    conditions = [condition.name for condition in found.record.conditions]
+    drives = system(fixed=drive(0.0), slow=drive(0.0, late=True))
+    assert set(drives.interface.channel("flux").readers) == {"observer.flux", "control.flux"}
+    run = audit(drives, baseline="fixed", repair="slow", fault="flux:scale=3", scenes=8)
+    conditions = [condition.name for condition in run.record.conditions]
     assert conditions == ["correct", "control", "observer", "shared"]
 
 
 def attempted(module, fault):
-    made = system(only=module)
-    faults = parse_fault(fault, made.interface, {}, 0.1)
-    return attempt(made, Treatment(variant="only", faults=faults), ("seed/1", "seed/2"))
+    tested = system(only=module)
+    faults = parse_fault(fault, tested.interface, {}, 0.1)
+    return attempt(tested, Treatment(variant="only", faults=faults), ("seed/1", "seed/2"))
 
 
 def test_delivery_logs_count_what_was_read_and_a_fault_after_a_write_is_not_delivered():

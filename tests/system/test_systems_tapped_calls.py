@@ -192,9 +192,9 @@ def test_calls_between_their_parts_are_readers_of_their_own() -> None:
 
 
 def test_a_fault_stops_where_the_method_is_never_called() -> None:
-    made = system(one=cruise(limits=False))
-    faults = parse_fault("speed:scale=3", made.interface, {}, 0.1)
-    reply = attempt(made, Treatment(variant="one", faults=faults), ("seed/1",))
+    cruising = system(one=cruise(limits=False))
+    faults = parse_fault("speed:scale=3", cruising.interface, {}, 0.1)
+    reply = attempt(cruising, Treatment(variant="one", faults=faults), ("seed/1",))
     assert isinstance(reply, Failed)
     assert isinstance(reply.error, NotDelivered)
     assert "speed -> limits.speed" in str(reply.error)

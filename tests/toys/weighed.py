@@ -162,7 +162,7 @@ def golden(**options: str) -> System:
 
 
 def impostor() -> System:
-    return object()  # pyright: ignore[reportReturnType]
+    return object()  # pyright: ignore[reportReturnType] - the mistake that it makes
 
 
 def needy() -> System:

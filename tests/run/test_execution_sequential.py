@@ -41,15 +41,15 @@ def test_it_holds_the_first_scenes_of_its_order_and_no_others(stopped, tmp_path)
     assert [row.taps for row in result.deliveries.rows] == [r.taps for r in plain.deliveries.rows]
 
 
-def test_every_look_is_taken_once_and_holds_all_scenes_before_it(tmp_path):
-    looks: list[set[str]] = []
+def test_every_analysis_is_made_once_and_holds_all_scenes_before_it(tmp_path):
+    analyses: list[set[str]] = []
 
     def stop(table: Trials) -> bool:
-        looks.append(seen(table))
+        analyses.append(seen(table))
         return False
 
     result = run_plan(sequential(batch=4), tmp_path, workers=2, stop=stop)
-    assert looks == [set(ORDER[:4]), set(ORDER[:8]), set(ORDER)]
+    assert analyses == [set(ORDER[:4]), set(ORDER[:8]), set(ORDER)]
     assert seen(result.trials) == set(SCENES)
 
 
