@@ -69,10 +69,10 @@ def judge(
     folder = question.folder or _folder(paired, sources)
     if (folder / "manifest.json").exists():
         raise UserError(f"{folder} holds an audit's trials: give another folder with --out.")
-    begin(folder)
     record = decide(
         paired.question, paired.facts, paired.conditions, paired.trials, paired.findings
     )
+    begin(folder)
     record = with_stored(folder, record)
     with locked(folder, shown.say):
         system = _system(paired.question)

@@ -12,7 +12,7 @@ from faultpath.core.arrays import HostArray, to_numpy
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import unknown
 from faultpath.loop import Batch, Inputs, Plant, Port, Progress
-from faultpath.system.arguments import check_episode, truth_of
+from faultpath.system.arguments import check_episode, number_of, truth_of
 from faultpath.system.observed import Selector, select
 from faultpath.system.outcome import Metric
 
@@ -262,7 +262,7 @@ class EpisodePlant(Plant):
             success = self._succeeded(episode)
             succeeded[i] = truth_of("succeeded", self._succeeded, success, "an episode")
             for name, measure in self.metrics.items():
-                state.metrics[name][i] = measure.of(episode)
+                state.metrics[name][i] = number_of(name, measure.of, measure.of(episode))
             crashed[i] = terminated[i] and not succeeded[i]
         state.running, state.succeeded, state.crashed = state.running & ~ended, succeeded, crashed
         if not state.running.any():
