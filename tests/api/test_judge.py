@@ -284,6 +284,20 @@ def test_a_table_of_a_spreadsheet_may_begin_with_a_byte_order_mark(tmp_path: Pat
     assert one.effects == two.effects
 
 
+@pytest.mark.parametrize(
+    ("results", "folder", "says"),
+    [
+        (None, "run", "results: None is no path: give files or folders"),
+        ({"scene": [1]}, "run", "is no path"),
+        (b"all.csv", "run", "is no path"),
+        ("all.csv", 3, "folder: is 3, and must be a Path"),
+    ],
+)
+def test_what_is_no_path_is_refused(results: object, folder: Any, says: str) -> None:
+    with pytest.raises(UserError, match=says):
+        judged(results, folder)
+
+
 DAMAGED: dict[str, tuple[str, bytes, str]] = {
     "kind": ("a.txt", b"", "is of no kind that is read"),
     "json": ("a.json", b'{"per_task": [{"task_id": 1}]}', r"per_task\[0\].task_group: is missing"),
