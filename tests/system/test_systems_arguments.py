@@ -91,6 +91,11 @@ MISTAKES = {
         "steps=100, over=lambda: True,",
         r"called as over\(state\): give it 1 a",
     ),
+    "render": (
+        "steps=100,",
+        "steps=100, render=lambda state: [1, 2],",
+        r"`render` must return points .*; it returned \[1, 2\]",
+    ),
     "start": ('return {"place"', '{"place"', "`start` returned nothing: it must return the state"),
 }
 
