@@ -209,6 +209,12 @@ def test_seeds_count_as_one_scene_and_failed_trials_are_left_out():
     system.failing = {(pair, f"s{i:04d}") for i in range(400)}
     with pytest.raises(UserError, match="is left, because all failed"):
         scanned(system)
+    one, two = "a:offset=-0.4@one", "b:offset=0.4@two"
+    system.failing = {((one, two)[i % 2], f"s{i:04d}") for i in range(400)}
+    with pytest.raises(
+        UserError, match=f"no scene is left in which whole ran with {one} and {two}"
+    ):
+        scanned(system)
 
 
 def test_trials_that_are_no_pairs_give_no_result():

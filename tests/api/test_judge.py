@@ -179,6 +179,24 @@ REFUSED: dict[str, tuple[str, dict[str, Any], str]] = {
     "unpaired": (HEADER + ROW.replace("new,s0", "new,s1"), {}, "no trial of 'old' has its pair"),
     "condition": (HEADER + ROW.replace(",0,,", ",0,fog,"), {}, r"no condition is nominal \(fog\)"),
     "nominal": (HEADER + ROW, {"nominal": "fog"}, "no such condition: unknown condition 'fog'"),
+    "nominal, shared": (
+        HEADER + ROW + ROW.replace(",0,,", ",0,shared,"),
+        {"nominal": "shared", "shared": "shared"},
+        "'shared' is the nominal condition: name another with --shared",
+    ),
+    **{
+        f"no module, {name}": (
+            HEADER + ROW + ROW.replace(",0,,", f",0,{name},"),
+            {},
+            f"condition '{name}' does not name a module",
+        )
+        for name in ("isolated:", "isolated:shared", "as-run")
+    },
+    "none left": (
+        HEADER + ROW.replace(",,1,", ",,,"),
+        {},
+        r"such as that of new in s0 in these results \(the results give no outcome\): fix",
+    ),
     "one variant": (
         HEADER + ROW + "new,s0,0,shared,1,h\n",
         {},
@@ -249,6 +267,13 @@ def test_a_shared_condition_of_another_name_is_asked_for(
     assert (sentence in caplog.text) == noticed
 
 
+def test_seeds_that_are_one_number_are_two_labels(tmp_path: Path) -> None:
+    (file := tmp_path / "all.csv").write_text(HEADER + ROW + ROW.replace(",0,", ",00,"))
+    record = judged(file, tmp_path / "run").record
+    assert record.facts.seeds == (0, 1)
+    assert record.counts[0].trials == 2
+
+
 def test_the_largest_numbers_that_are_read_can_be_added_up(tmp_path: Path) -> None:
     trials = [(variant, n, won) for variant, each in WON.items() for n, won in enumerate(each)]
     rows = [
@@ -267,6 +292,20 @@ def test_a_table_of_a_spreadsheet_may_begin_with_a_byte_order_mark(tmp_path: Pat
     marked.write_text(HEADER + ROW, encoding="utf-8-sig")
     one, two = (judged(file, tmp_path / file.stem).record for file in (plain, marked))
     assert one.effects == two.effects
+
+
+@pytest.mark.parametrize(
+    ("results", "folder", "sentence"),
+    [
+        (None, "run", "results: None is no path: give files or folders"),
+        ({"scene": [1]}, "run", "is no path"),
+        (b"all.csv", "run", "is no path"),
+        ("all.csv", 3, "folder: is 3, and must be a Path"),
+    ],
+)
+def test_what_is_no_path_is_refused(results: object, folder: Any, sentence: str) -> None:
+    with pytest.raises(UserError, match=sentence):
+        judged(results, folder)
 
 
 @pytest.mark.parametrize("stored", ["", "{}", '{"format": 2}'])

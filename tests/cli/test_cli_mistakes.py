@@ -64,6 +64,7 @@ def test_a_mistake_about_the_quadrotor(options, names, tmp_path, monkeypatch):
 
 
 LINES = [
+    (["adit"], ["no such command 'adit', did you mean 'audit'?"]),
     (["fly"], ["'fly'", "`faultpath --help`"]),
     (["audit"], ["system", "`faultpath audit --help`"]),
     (["audit", TOY], ["--baseline"]),

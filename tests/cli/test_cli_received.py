@@ -119,6 +119,14 @@ FORGED: dict[str, tuple[str, Change]] = {
         record(lambda c: c["effects"][0].update(condition="nowhere")),
     ),
     "no effects": ("contradict", record(lambda c: c.update(effects=[]))),
+    "an effect without counts": (
+        "without its counts",
+        record(lambda c: c["effects"][0].update(won=[])),
+    ),
+    "an effect that is not significant": (
+        "calls significant what its p-values do not",
+        record(lambda c: c["effects"][0].update(sign=1, corrected_p=0.06)),
+    ),
     "no secondary outcomes": ("contradict", record(lambda c: c.update(secondary=[]))),
     "no counts": ("versions", record(lambda c: c.update(counts=[]))),
     "another count": ("count", record(lambda c: c["counts"][0].update(success=77))),

@@ -5,7 +5,7 @@ import sys
 import pyarrow as pa
 import pytest
 
-from faultpath.core.error_source import location, ours
+from faultpath.core.error_source import explained, location, ours
 
 
 def test_a_distribution_that_carries_our_name_answers_for_its_own_mistakes(tmp_path, monkeypatch):
@@ -36,3 +36,20 @@ def test_what_a_package_compiled_from_cython_is_nobodys_system():
         pa.table({"a": [1]}).column("b")
     error.value.__traceback__ = error.value.__traceback__.tb_next
     assert location(error.value) == ""
+
+
+def test_what_a_system_raises_in_a_generator_of_ours_is_its_own(tmp_path, monkeypatch):
+    """Python makes another error of StopIteration there."""
+    (tmp_path / "stops_zz.py").write_text("def f(): return next(iter(()))")
+    monkeypatch.setattr(sys, "path", [*sys.path, str(tmp_path)])
+    import stops_zz
+
+    def generator():
+        yield stops_zz.f()
+
+    with pytest.raises(RuntimeError) as error:
+        next(generator())
+    mistake = explained(error.value)
+    assert mistake is not None
+    assert mistake.location.endswith("stops_zz.py, line 1")
+    assert "StopIteration" in str(mistake)

@@ -130,7 +130,7 @@ def test_joined_faults_have_one_cause_and_each_its_loading() -> None:
         ("mass:scale=1..2/٣", "a range cannot be read"),
         ("wind:delay=5.5", "steps is 5.5, and must be a whole number"),
         ("wind:delay=-1", "steps is -1, and must be a number of at least 0"),
-        ("wind:delay=1,2", "several sizes"),
+        ("wind:delay=1,2", "several sizes, and this takes one"),
         ("wind:noise=-1", "std must not be negative"),
         ("wind:freeze=3", "'freeze' takes no value"),
         ("mass:scale=1,factors=2", "unknown option 'factors'"),

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from faultpath.core.errors import UserError
+from faultpath.core.files.atomic import make_folder
 from faultpath.loop import TapCount
 from faultpath.run.attempt import Done
 from faultpath.run.code import CodeState
@@ -53,6 +54,22 @@ def _unexpected(text: str) -> None:
 
 SCENES = ("s0", "s1", "s2")
 TAPS = (TapCount("mass", "planner.thrust", 36, 9, 8), TapCount("mass", "observer.model", 36, 0, 0))
+
+
+def test_a_run_that_was_killed_at_its_first_write_goes_on(tmp_path, monkeypatch):
+    folder = RunFolder(tmp_path / "run")
+
+    def killed(path: Path) -> None:
+        make_folder(path)
+        if path.parent == folder.path:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr("faultpath.run.store.folder.make_folder", killed)
+    with pytest.raises(KeyboardInterrupt), folder.open(_manifest(), _unexpected):
+        pass
+    monkeypatch.undo()
+    with folder.open(_manifest(), _unexpected):
+        assert folder.list_shards() == {}
 
 
 def test_a_shard_reads_back(folder):

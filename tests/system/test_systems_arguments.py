@@ -92,6 +92,11 @@ MISTAKES = {
         "steps=100, over=lambda: True,",
         r"called as over\(state\): give it 1 a",
     ),
+    "render": (
+        "steps=100,",
+        "steps=100, render=lambda state: [1, 2],",
+        r"`render` must return points .*; it returned \[1, 2\]",
+    ),
     "start": ('return {"place"', '{"place"', "`start` returned nothing: it must return the state"),
 }
 
@@ -120,18 +125,27 @@ def test_a_wrong_argument_is_told_with_its_line_and_what_to_give(
 @pytest.mark.parametrize(
     ("before", "after", "sentence"),
     [
-        ("episode: missed_m(episode) <", "episode: 0 * missed_m(episode) +", "`succeeded` ret"),
+        (
+            "episode: missed_m(episode) <",
+            "episode: 0 * missed_m(episode) +",
+            "`succeeded` ret.* it must return true or false",
+        ),
         (
             "steps=100,",
             "steps=100, over=lambda state: [True],",
-            r"`over` returned \[True\] of the state",
+            r"`over` returned \[True\] of the state.* it must return true or false",
+        ),
+        (
+            '"less"), missed_m',
+            '"less"), lambda episode: "far"',
+            "metric 'missed_m' is 'far' of an episode: it must be a number",
         ),
     ],
 )
-def test_what_is_neither_true_nor_false_is_told_with_its_line(own, before, after, sentence) -> None:
+def test_a_wrong_value_of_a_function_is_told_with_its_line(own, before, after, sentence) -> None:
     system = own(before, after)
     run = run_block(system, BlockSpec(Treatment(variant="typical", seed=0), ("seed/0",)))
-    assert re.search(f"own.py, line [0-9]+: {sentence}.* it must return true or false", run.error)
+    assert re.search(f"own.py, line [0-9]+: {sentence}", run.error)
 
 
 def test_seeds_may_be_an_array(own) -> None:
@@ -141,5 +155,6 @@ def test_seeds_may_be_an_array(own) -> None:
 
 def test_a_step_that_returns_nothing_is_told(own) -> None:
     plant = own('return state | {"speed"', 'state | {"speed"').plant()
-    with pytest.raises(SystemMistake, match="`step` returned nothing: it must return the state"):
+    with pytest.raises(SystemMistake, match="`step` returned nothing: it must return") as mistake:
         plant.world("seed/0", 0).step(np.zeros(()), 0)
+    assert "own.py, line " in mistake.value.location

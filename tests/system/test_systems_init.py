@@ -70,7 +70,7 @@ def test_an_audit_of_an_environment_takes_forty_lines():
 
 def test_what_cannot_be_written_is_said(tmp_path):
     pytest.importorskip("torch")  # one of the names that are taken
-    for name in ("my rover", "Rover", "test_rover", "rover_test", "__init__", "_a", "1st", ""):
+    for name in ("my rover", "Rover", "test_rover", "rover_test", "__init__", "_a", "1st", "é", ""):
         with pytest.raises(UserError, match="cannot name a system"):
             write_system(name, "numpy", tmp_path)
     for name in ("numpy", "torch", "gymnasium", "json", "class", "conftest", "usercustomize"):

@@ -6,6 +6,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from faultpath.analyses.model import where
 from faultpath.core.errors import UserError
 from faultpath.run.findings import Unpaired
 from faultpath.run.pairing import Group, Pairs, pair
@@ -45,9 +46,13 @@ def compared(repair: str, baseline: str, conditions: Iterable[str], trials: Tria
     success = {condition: paired.success for condition, paired in pairs.items()}
     left = [condition for condition, pair in success.items() if paired_scenes(*pair).any()]
     if not left:
+        row, error = next(iter(trials.errors.items()))
+        variant, condition, _, scene = trials.places[row]
         raise UserError(
-            "no scene is left to compare, because in each of them a trial failed: fix what made it "
-            "fail, or choose other scenes."
+            "no scene is left to compare, because in each of them a trial failed, such as that of "
+            f"{trials.variants[variant]} in {trials.scenes[scene].id} "
+            f"{where(trials.conditions[condition])} ({error}): fix what made it fail, or choose "
+            "other scenes."
         )
     columns = np.concatenate([part for condition in left for part in success[condition]])
     alike = np.array_equal(columns, np.repeat(columns[:, :1], columns.shape[1], 1), equal_nan=True)

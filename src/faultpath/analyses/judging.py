@@ -98,6 +98,10 @@ def _condition_names(conditions: Collection[str], question: JudgeQuestion) -> di
         return {"": AS_RUN}
     nominal = {question.nominal} if question.nominal else {"", "nominal", "correct"}
     shared = {question.shared} if question.shared else {"shared"}
+    if question.shared in nominal - {""}:
+        raise UserError(
+            f"'{question.shared}' is the nominal condition: name another with --shared."
+        )
     names: dict[str, str] = {}
     for condition in sorted(conditions):
         if condition in nominal:
@@ -118,6 +122,12 @@ def _condition_names(conditions: Collection[str], question: JudgeQuestion) -> di
             f"two of the conditions mean the same ({listed(conditions)}): say with --nominal and "
             "--shared which is which."
         )
+    for condition, name in names.items():
+        if name in ("", AS_RUN) or (name == SHARED and condition not in shared):
+            raise UserError(
+                f"condition '{condition}' does not name a module: give the name of the module that "
+                "alone had the fault, or say with --nominal and --shared what the condition is."
+            )
     return names
 
 

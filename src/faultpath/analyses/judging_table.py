@@ -57,8 +57,9 @@ def units_of(trials: Iterable[Address], request: JudgeQuestion) -> Units:
             "scene: leave --generalise models out."
         )
     seeds = tuple(range(most))
-    if alike and all(label.isdecimal() and len(label) < 19 for label in min(different)):
-        seeds = tuple(sorted(map(int, min(different))))
+    numbers = {int(label) for label in min(different) if label.isdecimal() and len(label) < 19}
+    if alike and len(numbers) == most:  # `1` and `01` are two labels and one number
+        seeds = tuple(sorted(numbers))
     return Units(labels, compared, seeds)
 
 

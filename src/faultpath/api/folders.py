@@ -23,6 +23,7 @@ from faultpath.run.store.folder import DELIVERIES, OUTCOMES, TRACES, read_regula
 from faultpath.run.store.signals import SIGNALS, decode_signals
 from faultpath.run.store.tables import decode_outcomes, decode_traces
 from faultpath.run.trials import Trials
+from faultpath.stats.estimate import ALPHA
 from faultpath.system.outcome import Status
 
 RECORD, SYSTEM, MAP, SCAN = "record.json", "system.json", "map.json", "scan.json"
@@ -146,6 +147,11 @@ def _other_effects(record: AuditResult) -> Iterator[str]:
     ends = {condition for change in record.changes for condition in (change.isolated, SHARED)}
     if not ends.issubset(names) or [of.condition for of in record.secondary] != names:
         yield "the result has effects that contradict each other"
+    if not all(effect.won for effect in record.effects):
+        yield "the result has an effect without its counts"
+    significant = [of for of in (*record.effects, *record.changes) if of.sign]
+    if any(of.corrected_p is None or of.corrected_p > ALPHA for of in significant):
+        yield "the result calls significant what its p-values do not"
 
 
 def _other_taps(record: AuditResult, interface: Interface, deliveries: Deliveries) -> Iterator[str]:

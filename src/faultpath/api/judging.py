@@ -34,6 +34,7 @@ from faultpath.run.received.results import read_results
 from faultpath.run.shown import SystemShown, VariantShown
 from faultpath.run.store.folder import RunFolder
 from faultpath.run.work.processes import local
+from faultpath.system import declared
 
 
 @with_question_signature(JudgeQuestion)
@@ -56,7 +57,9 @@ def judge(
         UserError: A file cannot be read, the trials cannot be paired, or nothing can be compared.
     """
     question = ask(JudgeQuestion, arguments, isinstance(progress, Display) and progress.is_command)
-    named = [results] if isinstance(results, str | PathLike) else list(results)
+    named = [results] if isinstance(results, str | PathLike) else results
+    if not isinstance(named, Sequence) or not all(isinstance(n, str | PathLike) for n in named):
+        raise UserError(f"results: {declared.shown(results)} is no path: give files or folders.")
     if not named:
         raise UserError("there are no results to judge: name a file.")
     fields = {"results": [str(path) for path in named], **question.model_dump(exclude_unset=True)}
@@ -69,10 +72,10 @@ def judge(
     folder = question.folder or _folder(paired, sources)
     if (folder / "manifest.json").exists():
         raise UserError(f"{folder} holds an audit's trials: give another folder with --out.")
-    begin(folder)
     record = decide(
         paired.question, paired.facts, paired.conditions, paired.trials, paired.findings
     )
+    begin(folder)
     record = with_stored(folder, record)
     with locked(folder, shown.say):
         system = _system(paired.question)

@@ -129,7 +129,7 @@ def _sentence(error: BaseException) -> str | None:
 
     if isinstance(error, TyperException):  # from the parser of the arguments
         # What typer reads by pydantic has pydantic's own words before the sentence.
-        text = error.format_message().replace("Value error, ", "")
+        text = error.format_message().replace("Value error, ", "").replace(". Did you", ", did you")
         text = text.strip().rstrip(".").replace(". ", ": ")
         if not text:
             return ""

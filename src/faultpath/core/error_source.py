@@ -107,6 +107,8 @@ def explained(error: BaseException) -> UserError | None:
     """
     if isinstance(error, UserError):
         return located(error)
+    if isinstance(error.__cause__, StopIteration):  # the system's own, let through a generator
+        error = error.__cause__
     own, innermost = location(error), next(_frames(error), "")
     if not own or not (innermost or isinstance(error, (SystemExit, *_MISUSE))):
         return None

@@ -36,6 +36,7 @@ _WITH = {
     "less_than_equal": "a number of at most {le:g}",
     "literal_error": "{expected}",
     "enum": "{expected}",
+    "is_instance_of": "a {class}",
     "union_tag_invalid": "of the {discriminator} {expected_tags}",
     "string_pattern_mismatch": "text of the form {pattern}",
     "string_too_short": "text of at least {min_length} characters",

@@ -46,7 +46,10 @@ def parse_fault(
     parsed = FaultText.read(text) if isinstance(text, str) else text
     try:
         if len(parsed.sizes) > 1:
-            raise UserError("it has several sizes: use faultpath.api.audits")
+            raise UserError(
+                "it has several sizes, and this takes one; from Python, faultpath.api.audits takes "
+                "several"
+            )
         faults: list[Fault] = []
         for part in (parsed, *parsed.joined):
             update, options = _timing(part.options, dt_s)

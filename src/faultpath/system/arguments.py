@@ -127,6 +127,16 @@ def truth_of(name: str, function: Callable[..., Any], value: Any, of: str) -> bo
     return bool(value)
 
 
+def number_of(name: str, function: Callable[..., Any], value: Any) -> float:
+    """Return what a metric is of an episode; `SystemMistake` where that is no number."""
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise mistake_in(
+            function, f"metric '{name}' is {shown(value)} of an episode: it must be a number"
+        ) from None
+
+
 def _mapping(name: str, value: Any, example: str) -> Mapping[str, Any]:
     if not isinstance(value, Mapping):
         raise SystemMistake(f"{name} is {shown(value)}: give a mapping by name, {example}")

@@ -9,10 +9,11 @@ import numpy as np
 from typing_extensions import override
 
 from faultpath.core.arrays import HostArray, to_numpy
+from faultpath.core.error_source import mistake_in
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import unknown
 from faultpath.loop import Batch, Inputs, Plant, Port, Progress
-from faultpath.system.arguments import check_episode, truth_of
+from faultpath.system.arguments import check_episode, number_of, shown, truth_of
 from faultpath.system.observed import Selector, select
 from faultpath.system.outcome import Metric
 
@@ -148,6 +149,7 @@ class EpisodePlant(Plant):
         self.senses = (*self._observes, *self.facts)
         sensed = self._sensed([sample], [sample.observation])
         self.shapes = {name: np.shape(value)[1:] for name, value in sensed.items()}
+        self._lines([sample])  # else what is wrong with it shows after all trials
         sample.close()
 
     @abstractmethod
@@ -203,15 +205,23 @@ class EpisodePlant(Plant):
     def drawn(self, state: _Batch) -> HostArray | None:
         """Return each scene as a line through points, `[B, P, 2]`, m, with NaN at gaps; `None`: the
         plant has no `render`."""
+        return self._lines(state.worlds)
+
+    def _lines(self, worlds: Sequence[SceneInstance]) -> HostArray | None:
         if self._render is None:
             return None
-        lines = [np.asarray(self._render(world.view()), float) for world in state.worlds]
-        if any(line.ndim != 2 or line.shape != (len(lines[0]), 2) for line in lines):
-            raise SystemMistake(
+        drawings = [self._render(world.view()) for world in worlds]
+        try:
+            lines = np.array(drawings, dtype=float)
+        except (TypeError, ValueError):
+            lines = np.empty(0)
+        if lines.ndim != 3 or lines.shape[2] != 2:
+            raise mistake_in(
+                self._render,
                 "`render` must return points (x, y) in metres, as many at each step; it returned "
-                f"an array of shape {list(lines[0].shape)}"
+                f"{shown(drawings[0])}",
             )
-        return np.stack(lines)
+        return lines
 
     @override
     def sense(self, state: _Batch) -> dict[str, HostArray]:
@@ -262,7 +272,7 @@ class EpisodePlant(Plant):
             success = self._succeeded(episode)
             succeeded[i] = truth_of("succeeded", self._succeeded, success, "an episode")
             for name, measure in self.metrics.items():
-                state.metrics[name][i] = measure.of(episode)
+                state.metrics[name][i] = number_of(name, measure.of, measure.of(episode))
             crashed[i] = terminated[i] and not succeeded[i]
         state.running, state.succeeded, state.crashed = state.running & ~ended, succeeded, crashed
         if not state.running.any():

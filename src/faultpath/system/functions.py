@@ -7,7 +7,7 @@ import numpy as np
 from typing_extensions import override
 
 from faultpath.core.arrays import HostArray
-from faultpath.core.errors import SystemMistake
+from faultpath.core.error_source import mistake_in
 from faultpath.core.streams import generator
 from faultpath.system.arguments import check_call, truth_of
 from faultpath.system.episodes import Episode, EpisodePlant, Measure, SceneInstance, Selector, Show
@@ -70,12 +70,12 @@ class FunctionPlant(EpisodePlant):
 
     @override
     def world(self, scene: str, seed: int) -> SceneInstance:
-        state = _required("start", self._start(generator("plant/start", scene, 0)))
+        state = _returned("start", self._start, generator("plant/start", scene, 0))
 
         def step(action: HostArray, step: int) -> tuple[Any, float, bool, bool, dict[str, Any]]:
             nonlocal state
             draws = generator("plant/step", scene, seed, step)
-            state = _required("step", self._step(state, action, draws))
+            state = _returned("step", self._step, state, action, draws)
             over = self._over
             ends = over is not None and truth_of(
                 "over", over, over(state), "the state of one scene"
@@ -87,7 +87,8 @@ class FunctionPlant(EpisodePlant):
         return SceneInstance(state, {}, hashed(state), hashed(scene, seed), step, lambda: state)
 
 
-def _required(name: str, state: Any) -> Any:
+def _returned(name: str, function: Callable[..., Any], *arguments: Any) -> Any:
+    state = function(*arguments)
     if state is None:
-        raise SystemMistake(f"`{name}` returned nothing: it must return the state")
+        raise mistake_in(function, f"`{name}` returned nothing: it must return the state")
     return state

@@ -145,6 +145,15 @@ def _version(
     success, unlike = successes(trials, variant, names, scanned.second)
     unpaired += unlike
     by_errors = {places: success[name or CORRECT] for places, name in conditions.items()}
+    for one, other in scanned.pairs:
+        together = [(), (one,), (other,), (one, other)]
+        if np.isnan([by_errors[part] for part in together]).any(axis=0).all():
+            alone = " and ".join(conditions[part] for part in together[1:3])
+            raise UserError(
+                f"no scene is left in which {variant} ran with {alone} alone and with both, "
+                "because trials failed: fix what made them fail, or give a smaller error with "
+                "--fault."
+            )
     singles, pairs = _second_stage(scanned, by_errors)
     return ScannedVersion(
         variant=variant,

@@ -88,12 +88,12 @@ class RunFolder:
             previous = read_manifest(self.manifest)
             if previous is not None:
                 check_same(self.path, previous, manifest, shared)
+            atomic.sweep(self.path)
+            if previous != manifest:  # first of all: without it the folder is nobody's
+                self._write(self.manifest, manifest.encode())
             for folder in (self.shards, self.failures):
                 make_folder(folder)
-            for folder in (self.path, self.shards, self.failures):
                 atomic.sweep(folder)
-            if previous != manifest:
-                self._write(self.manifest, manifest.encode())
             self._shard_files = self.list_shards()
             yield
 
