@@ -32,9 +32,8 @@ def toy_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(ROOT)
         ended = again(folder)
-    assert (ended.status, ended.err) == (0, "")
+    assert ended.status == 0, ended.err
     assert str(folder / "report.html") in ended.out
-    assert "Recording signals" in ended.out
     return folder
 
 
@@ -83,6 +82,15 @@ def test_a_second_time_everything_is_kept_and_json_is_all_of_the_standard_output
     assert json.loads((run / "provenance.json").read_text())["blocks_computed"] == 0
 
 
+def test_progress_and_notices_stay_out_of_the_standard_output(tmp_path):
+    first, second = (audit(scenes=SCENES, out=tmp_path / "run") for _ in range(2))
+    assert first.out == second.out
+    assert first.out.startswith("Do not choose by the fault at the observer alone")
+    assert "Running: 320 of 320 trials" in first.err
+    assert "Recording signals: " in first.err
+    assert second.err.startswith("Kept 320 of 320 trials")
+
+
 def test_reports_are_made_again_from_what_is_stored(run):
     before = {name: (run / name).read_bytes() for name in ("report.html", "table.md")}
     for name in before:
@@ -112,7 +120,7 @@ def test_another_metric_of_the_kept_trials_runs_nothing():
     (folder,) = Path("runs").iterdir()
     ended = audit("--metric", "terminal_distance_m", "--thresholds", "0.1,0.5", scenes=2)
     assert ended.status == 0
-    assert "Kept 16 of 16 trials" in ended.out
+    assert "Kept 16 of 16 trials" in ended.err
     assert list(Path("runs").iterdir()) == [folder]
     assert open_run(folder).record.question.metric == "terminal_distance_m"
 
@@ -122,7 +130,7 @@ def test_after_an_edit_a_run_starts_anew_beside_the_other(tmp_path):
     (system := tmp_path / "toy.py").write_text(text)
     for kept in (False, True):
         ended = audit(system=f"{system}:create")
-        assert ("Kept 48 of 48 trials, from 20" in ended.out) == kept
+        assert ("Kept 48 of 48 trials, from 20" in ended.err) == kept
     (before,) = Path("runs").iterdir()
     assert "48 trials in 6 blocks, 0 of them" in (before / "report.html").read_text()
     outcomes = (before / "outcomes.parquet").read_bytes()

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -41,16 +42,16 @@ def audit(
     """Audit a repair against a baseline under correct inputs, under the fault at each module
     alone, and under the shared fault."""
     gate = Gate.of(fail_if, junit, summary)
-    # What builds a system may load for seconds; until then this is all that there is to see.
-    variants = f"{one_line(arguments['repair'])} with {one_line(arguments['baseline'])}"
-    typer.echo(f"Building {one_line(system)}, to compare {variants}.", err=as_json)
+    if sys.stderr.isatty():  # what builds a system may load for seconds, with nothing else to see
+        variants = f"{one_line(arguments['repair'])} with {one_line(arguments['baseline'])}"
+        typer.echo(f"Building {one_line(system)}, to compare {variants}.", err=True)
 
     from faultpath.api.audit import audits
     from faultpath.api.comparing import compare
     from faultpath.api.display import SafeConsole
     from faultpath.report.comparison import shown
 
-    runs = audits(system, **arguments, progress=display(as_json))
+    runs = audits(system, **arguments, progress=display())
     status = _print(runs, as_json, gate, len(runs) == 1 or details, details)
     if len(runs) > 1:
         compared, first, folder = compare(runs), runs[0].folder, arguments.get("folder")
@@ -89,7 +90,7 @@ def judge(
     from faultpath.api.judging import judge
 
     gate = Gate.of(fail_if, junit, summary)
-    run = judge(results, **arguments, progress=display(as_json))
+    run = judge(results, **arguments, progress=display())
     return _print((run,), as_json, gate, True, details)
 
 

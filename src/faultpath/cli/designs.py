@@ -18,7 +18,7 @@ def reversal_map(system: SystemName, as_json: Json = False, **arguments: Any) ->
     from faultpath.api.display import SafeConsole
     from faultpath.api.rounds import map
 
-    run = map(system, **arguments, progress=display(as_json))
+    run = map(system, **arguments, progress=display())
     if as_json:
         typer.echo(json.dumps(in_json(run.folder, run.record), indent=1))
     else:
@@ -43,7 +43,7 @@ def scan(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     from faultpath.report.tables.terminal import Parted
     from faultpath.report.terminal import conclusion
 
-    result = scan(system, **arguments, progress=display(as_json))
+    result = scan(system, **arguments, progress=display())
     console = SafeConsole()
     if isinstance(result, Ranking):
         if as_json:
