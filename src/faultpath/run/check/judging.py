@@ -201,14 +201,15 @@ def _readings(name: str, seen: Seen) -> Check:
     for read in (read for _, run in firsts for read in run.reads):
         low, high = spans.get(read.source, (read.low, read.high))
         spans[read.source] = min(low, read.low), max(high, read.high)
-        kinds.setdefault(read.source, set()).add(read.dtype)
+        if read.valid_step >= 0:  # `before`, its value before the first step, is always a float
+            kinds.setdefault(read.source, set()).add(read.dtype)
     shown: list[str] = []
     for source in seen.system.interface.sources:
         low, high = spans.get(source.name, (math.inf, -math.inf))
         if low > high:
             continue
         shown.append(f"{source.name} {low:.3g} to {high:.3g} {source.unit}".removesuffix(" 1"))
-        whole = sorted(kind for kind in kinds[source.name] if "int" in kind)
+        whole = sorted(kind for kind in kinds.get(source.name, ()) if "int" in kind)
         if whole and (source.unit != "1" or any("float" in kind for kind in kinds[source.name])):
             failures[f"{source.name} whole"] = (
                 f"Source '{source.name}' gives whole numbers ({whole[0]}) of unit {source.unit}: "
