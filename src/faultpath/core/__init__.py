@@ -1,1 +1,1 @@
-"""What all rooms use: errors and their sources, arrays, random streams, readers of files."""
+"""Parts that all rooms use: errors and their sources, arrays, random streams, readers of files."""
