@@ -53,7 +53,9 @@ def scan_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_a_map_leaves_its_record_pictures_and_page(map_run: Path) -> None:
     record = library.open_run(map_run).record
-    assert words(record).headline in (map_run / "report.html").read_text()
+    page = (map_run / "report.html").read_text()
+    assert words(record).headline in page
+    assert "gain, up to ±40 %" in page
     for name in ("map.svg", "correlation.svg"):
         assert ElementTree.fromstring((map_run / name).read_text()).tag.endswith("svg")
     circles = (map_run / "map.svg").read_text().count("<circle")

@@ -217,8 +217,10 @@ def ended(record: AuditResult) -> Table:
 
 
 def median_time(record: AuditResult) -> str:
-    """Say the median time of successes where all versions and conditions have the same."""
+    """Say the median time of successes where all versions and conditions have the same, or none."""
     times = {_median(count.median_time_s) for count in record.counts}
+    if times == {MISSING}:
+        return "No time of a success is known."
     same = len(record.counts) > 1 and len(times) == 1
     return (
         f"{capital(_MEDIAN)}, of each version under every condition: {min(times)} s."
