@@ -38,7 +38,7 @@ Trust = Annotated[
 ]
 Json = Annotated[
     bool,
-    typer.Option("--json", help="Print the result as JSON; its sentences go to standard error."),
+    typer.Option("--json", help="Print the result as JSON, alone on standard output."),
 ]
 
 

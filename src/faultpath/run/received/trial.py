@@ -8,7 +8,7 @@ from typing import Any
 
 from faultpath.core.errors import UserError
 from faultpath.core.numbers import number_of
-from faultpath.core.text import unknown
+from faultpath.core.text import series, unknown
 from faultpath.run.received.question import JudgeQuestion
 from faultpath.system.declared import check_name, shown
 from faultpath.system.outcome import Status
@@ -67,16 +67,15 @@ def received(
     `UserError` for a trial without a variant, scene or success, and for cells that cannot be.
     """
     variant, condition = file.label("variant", cells, where), file.label("condition", cells, where)
-    if not variant:
-        raise UserError(
-            f"{where} names no version: write it before the file, as in "
-            f"{question.repair}={file.path}, or name its column with `--column variant=NAME`."
-        )
     scene = _text(cells.get("scene"), f"{where}: the scene")
-    if not scene:
-        raise UserError(f"{where} names no scene: name the column with --column scene=NAME.")
-    if "success" not in cells:
-        raise UserError(f"{where} has no success: name the column with --column success=NAME.")
+    there = {"variant": variant, "scene": scene, "success": "success" in cells}
+    if missing := [name for name, is_there in there.items() if not is_there]:
+        columns = " ".join(f"--column {name}=NAME" for name in missing)
+        before = f"; a version may stand before the file, as in {question.repair}={file.path}"
+        raise UserError(
+            f"{where} has no {series(missing)}: name the {'columns' if missing[1:] else 'column'} "
+            f"with {columns}{'' if variant else before}."
+        )
     more = ("task", "seed", "initial")
     texts = {name: _text(cells.get(name), f"{where}: the {name}") for name in more}
     for name, text in {"variant": variant, "scene": scene, "condition": condition, **texts}.items():
