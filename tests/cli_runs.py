@@ -32,8 +32,9 @@ class Ended:
         assert self.status == 2, (self.status, self.out, self.err)
         assert "Traceback" not in self.out + self.err
         assert self.err.endswith("\n")
-        (line,) = self.err.splitlines()
+        *notices, line = self.err.splitlines()
         assert line.startswith("faultpath: ")
+        assert not [notice for notice in notices if notice.startswith("faultpath: ")]
         assert len(line) > 30
         assert not [name for name in names if name not in line], (line, names)
         return line

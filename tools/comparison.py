@@ -54,7 +54,7 @@ ANSWERS = {
     ALONE: "no: the difference that it shows is gone",
     SIZE: "which version is better, not by how much",
     SAME: "yes, as far as is seen",
-    OPEN: "not decided",
+    OPEN: "inconclusive",
 }
 """The same as an answer to the question whether the test foretells the shared fault's effect."""
 

@@ -220,6 +220,11 @@ REFUSED: dict[str, tuple[str, dict[str, Any], str]] = {
     "cells": (HEADER + "old,s0\n", {}, "all.csv, line 2: has 2 cells where the first line names 6"),
     "column": (HEADER + ROW, {"columns": {"scene": "sccene"}}, "unknown column 'sccene'; did you"),
     "no success": ("variant,scene\nold,s0\n", {}, "line 2 has no success: name the column"),
+    "other names": (
+        "policy,episode,ok\nold,s0,1\n",
+        {},
+        "line 2 has no variant, scene and success: name the columns with --column variant=NAME",
+    ),
     "metric": (HEADER + ROW, {"metrics": "reward"}, "line 2: unknown metric 'reward'"),
     "task": (HEADER + ROW, {"cluster": "task"}, "not every trial names its task"),
     "models": (HEADER + ROW, {"generalise": "models"}, "newly trained models need 5 seeds"),

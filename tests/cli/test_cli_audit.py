@@ -32,9 +32,8 @@ def toy_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(ROOT)
         ended = again(folder)
-    assert (ended.status, ended.err) == (0, "")
+    assert ended.status == 0, ended.err
     assert str(folder / "report.html") in ended.out
-    assert "Recording signals" in ended.out
     return folder
 
 
@@ -83,6 +82,15 @@ def test_a_second_time_everything_is_kept_and_json_is_all_of_the_standard_output
     assert json.loads((run / "provenance.json").read_text())["blocks_computed"] == 0
 
 
+def test_progress_and_notices_stay_out_of_the_standard_output(tmp_path):
+    first, second = (audit(scenes=SCENES, out=tmp_path / "run") for _ in range(2))
+    assert first.out == second.out
+    assert first.out.startswith("Do not choose by the fault at the observer alone")
+    assert "Running: 320 of 320 trials" in first.err
+    assert "Recording signals: " in first.err
+    assert second.err.startswith("Kept 320 of 320 trials")
+
+
 def test_without_a_folder_the_run_is_called_after_its_question_and_not_its_place(tmp_path):
     for place, fault in (("one", "0.6"), ("one", "0.5"), ("two", "0.6")):
         (tmp_path / place).mkdir(exist_ok=True)
@@ -103,7 +111,7 @@ def test_another_metric_of_the_kept_trials_runs_nothing():
     (folder,) = Path("runs").iterdir()
     ended = audit("--metric", "terminal_distance_m", "--thresholds", "0.1,0.5", scenes=2)
     assert ended.status == 0
-    assert "Kept 16 of 16 trials" in ended.out
+    assert "Kept 16 of 16 trials" in ended.err
     assert list(Path("runs").iterdir()) == [folder]
     assert open_run(folder).record.question.metric == "terminal_distance_m"
 

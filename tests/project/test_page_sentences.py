@@ -153,7 +153,7 @@ def test_teaching_examples_are_marked() -> None:
     ("words", "answer"),
     [
         ([REVERSAL], "no: the better version is the worse one"),
-        ([OPEN, ALONE, OPEN], "no: the difference that it shows is gone (1); not decided (2)"),
+        ([OPEN, ALONE, OPEN], "no: the difference that it shows is gone (1); inconclusive (2)"),
     ],
 )
 def test_an_answer_counts_only_several_audits(words, answer) -> None:

@@ -31,6 +31,14 @@ def test_the_terminal_shows_what_was_approved(one_seed: ReportInput, details, ap
     approved(f"terminal{', details' * details}", "\n".join(lines))
 
 
+def test_times_that_no_trial_has_are_one_sentence_and_no_column(one_seed: ReportInput) -> None:
+    counts = [c.model_copy(update={"median_time_s": None}) for c in one_seed.record.counts]
+    record = one_seed.record.model_copy(update={"counts": tuple(counts)})
+    page = report_page(replace(one_seed, record=record))
+    assert "No time of a success is known." in page
+    assert "edian time of successes" not in page
+
+
 def test_findings_stand_below_the_headline_doubts_first(one_seed: ReportInput) -> None:
     earlier = EarlierAnalysis(scenes=20, primary="shared")
     record = one_seed.record.model_copy(update={"earlier": (earlier,)})

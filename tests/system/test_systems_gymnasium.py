@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from gym_toys import SCENES, Keyed, Steer, Walk, plant, system, trials
 
+import faultpath
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.loop import Port
 from faultpath.run.check.blocks import BlockSpec, run_block
@@ -46,6 +47,20 @@ def test_an_environment_of_its_own_is_never_moved_beyond_its_end():
     walks.clear()
     ends = [round(o.time_s / 0.5) for o in trials(built)]
     assert [walk.calls for walk in walks] == [["reset", *["step"] * end] for end in ends]
+
+
+def test_a_discrete_action_of_which_a_module_reads_the_past_passes_the_check():
+    @writes("lean", past="push")
+    def predictor(place, push):
+        return place + 0.5 * push
+
+    @writes("push", before=0)
+    def controller(lean):
+        return (lean < 0).astype(int)
+
+    walker = plant(Keyed, observes={"place": ("at", 0)})
+    built = system(walker, [predictor, controller], units={"push": "1", "lean": "m"})
+    assert not faultpath.check(built, scenes=2, workers=0, progress=False).failures
 
 
 def test_what_runs_is_the_interface():

@@ -67,7 +67,7 @@ def command(
         executor=executor,
         device=device,
         time_limit_s=time_limit,
-        progress=display(as_json),
+        progress=display(),
     )
     if as_json:
         record = run.record.model_dump(mode="json")

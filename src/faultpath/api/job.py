@@ -110,7 +110,7 @@ class Job:
     executor: Executor
     display: Display
     time_limit_s: float | None = None
-    """Of a block; `None` for what the system says."""
+    """Longest that a block may take; `None` for what the system says."""
     started: datetime = field(default_factory=lambda: datetime.now(UTC))
 
     def run(

@@ -59,7 +59,7 @@ class Replayed:
 
     address: TrialAddress
     deviation: Deviation | None
-    """Of the second trial; `None` where it is the same to the bit."""
+    """How the second trial differs; `None` where it is the same to the bit."""
     signals: tuple[Signal, ...] = field(default=(), repr=False)
 
 

@@ -36,7 +36,7 @@ class FinishedRun(ABC):
     """A finished run: its result, how it was made, and where its files are."""
 
     files: ClassVar[tuple[str, ...]] = MADE_FROM
-    """What its pages are made from, the result first."""
+    """Files that its pages are made from, the result first."""
 
     def __init__(self, folder: Path, record: Any, provenance: RunProvenance) -> None:
         self.folder = folder

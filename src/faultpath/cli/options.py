@@ -37,15 +37,15 @@ Trust = Annotated[
 ]
 Json = Annotated[
     bool,
-    typer.Option("--json", help="Print JSON; other text goes to standard error."),
+    typer.Option("--json", help="Print the result as JSON, alone on standard output."),
 ]
 
 
-def display(stderr: bool = True) -> "Display":
-    """Return where a command shows what it does."""
+def display() -> "Display":
+    """Return where a command shows what it does: on standard error, apart from its result."""
     from faultpath.api.display import Display, SafeConsole
 
-    return Display(SafeConsole(stderr=stderr), ("faultpath", *sys.argv[1:]))
+    return Display(SafeConsole(stderr=True), ("faultpath", *sys.argv[1:]))
 
 
 def check_arguments(arguments: Sequence[str]) -> None:

@@ -1,13 +1,12 @@
 """`faultpath replay`: run trials of a finished run again."""
 
 import json
-from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from faultpath.cli.options import FOUND, Json, Trust
+from faultpath.cli.options import FOUND, Json, Trust, display
 from faultpath.cli.options import path as as_path
 from faultpath.core.errors import UserError
 
@@ -61,8 +60,7 @@ def replay(
     source = read_run(folder)
     scenes = chosen_scenes(source, scene or (), condition or ())
     console = SafeConsole(stderr=as_json)
-    say = partial(console.print, markup=False)
-    again = replay(source, scenes, condition or (), say, trust, code or ())
+    again = replay(source, scenes, condition or (), display().say, trust, code or ())
     replays = again.trials
     unlike = [trial for trial in replays if trial.deviation]
     for trial in unlike:

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -77,16 +78,16 @@ def audit(
     """Audit a repair against a baseline under correct inputs, under the fault at each module
     alone, and under the shared fault."""
     gate = Gate.of(fail_if, junit, summary)
-    # What builds a system may load for seconds; until then this is all that there is to see.
-    variants = f"{one_line(arguments['repair'])} with {one_line(arguments['baseline'])}"
-    typer.echo(f"Building {one_line(system)}, to compare {variants}.", err=as_json)
+    if sys.stderr.isatty():  # what builds a system may load for seconds, with nothing else to see
+        variants = f"{one_line(arguments['repair'])} with {one_line(arguments['baseline'])}"
+        typer.echo(f"Building {one_line(system)}, to compare {variants}.", err=True)
 
     from faultpath.api.audit import audits
     from faultpath.api.comparing import compare
     from faultpath.api.display import SafeConsole
     from faultpath.report.comparison import shown
 
-    runs = audits(system, **arguments, progress=display(as_json))
+    runs = audits(system, **arguments, progress=display())
     status = _print(runs, as_json, gate, len(runs) == 1 or details, details)
     if len(runs) > 1:
         compared, first, folder = compare(runs), runs[0].folder, arguments.get("folder")
@@ -125,7 +126,7 @@ def judge(
     from faultpath.api.judging import judge
 
     gate = Gate.of(fail_if, junit, summary)
-    run = judge(results, **arguments, progress=display(as_json))
+    run = judge(results, **arguments, progress=display())
     return _print((run,), as_json, gate, True, details)
 
 
@@ -136,7 +137,7 @@ def reversal_map(system: SystemName, as_json: Json = False, **arguments: Any) ->
     from faultpath.api.rounds import map
     from faultpath.report.map import tables
 
-    run = map(system, **arguments, progress=display(as_json))
+    run = map(system, **arguments, progress=display())
     return _print_conclusion(run, tables(run.record), as_json)
 
 
@@ -150,7 +151,7 @@ def scan(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     from faultpath.report.scan import ranking_table, tables
     from faultpath.report.terminal import Parted
 
-    run = scan(system, **arguments, progress=display(as_json))
+    run = scan(system, **arguments, progress=display())
     if isinstance(run, Ranking):
         if as_json:
             typer.echo(run.model_dump_json(indent=1))

@@ -1,3 +1,3 @@
-"""What all rooms use: errors and their sources, arrays, random streams, readers of files."""
+"""Parts that all rooms use: errors and their sources, arrays, random streams, readers of files."""
 
 __version__ = "0.3.0"

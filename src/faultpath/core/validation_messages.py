@@ -54,7 +54,7 @@ class Misfit:
     location: tuple[str | int, ...]
     """Keys and indices on the way to it."""
     says: str
-    """What is wrong and what is allowed, to follow a colon."""
+    """The mistake and what is allowed, to follow a colon."""
     names_it: bool = False
     """Whether the words name the location themselves."""
 

@@ -144,7 +144,7 @@ class FaultText:
 
 
 SEVERAL = "a number, or several as 0.01/0"
-"""What is needed where a reading may be a vector."""
+"""Value that a fault takes where a reading may be a vector."""
 
 
 def number_of(key: str, text: str, what: str = "a number") -> float:

@@ -202,8 +202,10 @@ def ended(result: AuditResult) -> Table:
 
 
 def median_time(result: AuditResult) -> str:
-    """Say the median time of successes where all versions and conditions have the same."""
+    """Say the median time of successes where all versions and conditions have the same, or none."""
     times = {_median(count.median_time_s) for count in result.counts}
+    if times == {MISSING}:
+        return "No time of a success is known."
     if len(result.counts) < 2 or len(times) > 1:
         return ""
     return f"{capital(_MEDIAN)}, of each version under every condition: {min(times)} s."

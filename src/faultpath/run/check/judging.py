@@ -205,14 +205,15 @@ def _readings(name: str, seen: Seen) -> Checked:
     for read in (read for _, _, run in firsts for read in run.reads):
         low, high = spans.get(read.source, (read.low, read.high))
         spans[read.source] = min(low, read.low), max(high, read.high)
-        kinds.setdefault(read.source, set()).add(read.dtype)
+        if read.valid_step >= 0:  # `before`, its value before the first step, is always a float
+            kinds.setdefault(read.source, set()).add(read.dtype)
     shown: list[tuple[str, float, float, str]] = []
     for source in seen.system.interface.sources:
         low, high = spans.get(source.name, (math.inf, -math.inf))
         if low > high:
             continue
         shown.append((source.name, low, high, source.unit))
-        whole = sorted(kind for kind in kinds[source.name] if "int" in kind)
+        whole = sorted(kind for kind in kinds.get(source.name, ()) if "int" in kind)
         if whole and (source.unit != "1" or any("float" in kind for kind in kinds[source.name])):
             failures.append(WholeNumbers(source.name, whole[0], source.unit))
         most = max(abs(low), abs(high))

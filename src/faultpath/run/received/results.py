@@ -21,7 +21,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.parquet import Unreadable, read_rows
 from faultpath.core.files.plain import Misread, read_json, text_of
-from faultpath.core.text import number_of, unknown
+from faultpath.core.text import number_of, series, unknown
 from faultpath.core.validation_messages import misfit_of
 from faultpath.run.received.formats import (
     LARGEST_LOG,
@@ -201,15 +201,18 @@ def _trial(
                 f"leave one of them out, or name another column with --column {name}=NAME."
             )
         texts[name] = sys.intern(label or texts[name])  # one text for all of its trials
-    if not texts["variant"]:
+    there = {
+        "variant": texts["variant"],
+        "scene": texts["scene"],
+        "success": "success" in cells,
+    }
+    if missing := [name for name, is_there in there.items() if not is_there]:
+        columns = " ".join(f"--column {name}=NAME" for name in missing)
+        before = f"; a version may stand before the file, as in {question.repair}={file.path}"
         raise UserError(
-            f"{where} names no version: write it before the file, as in "
-            f"{question.repair}={file.path}, or name its column with `--column variant=NAME`."
+            f"{where} has no {series(missing)}: name the {'columns' if missing[1:] else 'column'} "
+            f"with {columns}{'' if texts['variant'] else before}."
         )
-    if not texts["scene"]:
-        raise UserError(f"{where} names no scene: name the column with --column scene=NAME.")
-    if "success" not in cells:
-        raise UserError(f"{where} has no success: name the column with --column success=NAME.")
     for name, text in texts.items():
         if text:
             check_name(f"{where}: the {name}", text)
