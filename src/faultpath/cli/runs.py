@@ -208,13 +208,7 @@ def report(
         console.print(f"Page: {page}", markup=False, soft_wrap=True)
 
 
-def _print(
-    runs: "Sequence[Run]",
-    as_json: bool,
-    gate: Gate,
-    sentences: bool = True,
-    details: bool = False,
-) -> int:
+def _print(runs: "Sequence[Run]", as_json: bool, gate: Gate, sentences: bool, details: bool) -> int:
     """Print what was decided in each run, and its folder and record as JSON; return the status."""
     from faultpath.api.comparing import compare, in_json
     from faultpath.api.display import SafeConsole

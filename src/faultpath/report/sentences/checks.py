@@ -56,25 +56,26 @@ _NO_ROOM = {
 }
 _CAUSES = {
     # Whether two new processes differ, and whether the second run in one of them does.
-    (
-        True,
-        True,
-    ): "every run differs: draw from the `rng` of `step` or from faultpath.generator, not from "
-    "np.random, and look for clocks and threads.",
-    (
-        False,
-        True,
-    ): "the second run in a process differs: keep what a module remembers in its `memory`, or in "
-    "variables of run(), and nothing in globals or attributes, such as a counter, a cache or a "
-    "generator made once.",
-    (
-        True,
-        False,
-    ): "processes differ: look for hash(), id(), the order of a set and the environment.",
-    (False, False): "new processes repeat it: look for what other runs leave behind, and threads.",
-    None: "draw from the `rng` of `step` or from faultpath.generator, not from np.random, and "
-    "keep what a module remembers in its `memory`, or in variables of run(), not in "
-    "globals or attributes; in worker processes, a check can tell the two apart.",
+    (True, True): (
+        "every run differs: draw from the `rng` of `step` or from faultpath.generator, not from "
+        "np.random, and look for clocks and threads."
+    ),
+    (False, True): (
+        "the second run in a process differs: keep what a module remembers in its `memory`, or in "
+        "variables of run(), and nothing in globals or attributes, such as a counter, a cache or a "
+        "generator made once."
+    ),
+    (True, False): (
+        "processes differ: look for hash(), id(), the order of a set and the environment."
+    ),
+    (False, False): (
+        "new processes repeat it: look for what other runs leave behind, and threads."
+    ),
+    None: (
+        "draw from the `rng` of `step` or from faultpath.generator, not from np.random, and "
+        "keep what a module remembers in its `memory`, or in variables of run(), not in "
+        "globals or attributes; in worker processes, a check can tell the two apart."
+    ),
 }
 
 

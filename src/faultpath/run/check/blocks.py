@@ -34,7 +34,7 @@ from faultpath.system.declared import Variant
 from faultpath.system.outcome import Outcome
 from faultpath.system.system import System
 
-MISTAKES: dict[str, tuple[type[Exception], ...]] = {
+_MISTAKES: dict[str, tuple[type[Exception], ...]] = {
     "declared reads": (UndeclaredReader, IllegalRead),
     "shape and unit": (MalformedReading, NotFinite),
     "fault delivery": (NotDelivered, FaultedElsewhere),
@@ -172,7 +172,7 @@ def run_block(system: System, block: BlockSpec) -> RecordedBlock:
                 error, fails = text, "shape and unit"
         elif isinstance(result, Failed):
             error = str(result.error)
-            failing = (name for name, kinds in MISTAKES.items() if isinstance(result.error, kinds))
+            failing = (name for name, kinds in _MISTAKES.items() if isinstance(result.error, kinds))
             fails = next(failing, TRIALS)
         if error:
             break
