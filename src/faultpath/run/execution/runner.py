@@ -116,11 +116,11 @@ def run_plan(
                 notice(repeat(blocks, units, run, work, changed))
             state = RunState(plan, library, units, run, stop)
             with run.open(manifest, notice, shared):
-                schedule = TaskQueue(state.resume(notice), plan.scenes_per_analysis > 0)
+                queue = TaskQueue(state.resume(notice), plan.scenes_per_analysis > 0)
                 progress(state.progress())
                 work(
-                    lambda worker: None if state.enough() else schedule.take(worker),
-                    lambda task, reply: schedule.put(state.take_in(task, reply)),
+                    lambda worker: None if state.enough() else queue.take(worker),
+                    lambda task, reply: queue.put(state.take_in(task, reply)),
                     report=lambda: progress(state.progress()),
                 )
                 rechecks = Rechecks(state.units, state.outcomes, run)
