@@ -22,7 +22,7 @@ from faultpath_paper.claims.rules import (
     within,
 )
 from faultpath_paper.claims.statement import Turned
-from faultpath_paper.detection import least_detectable, resampled
+from faultpath_paper.detection import Difference, least_detectable, resampled
 from faultpath_paper.results import decisive
 
 from faultpath.stats.contrast import Contrast, change, percentile_interval, weighted_sum
@@ -36,7 +36,7 @@ UP, DOWN, OPEN = (5.0, 15.0), (-15.0, -5.0), (-5.0, 15.0)
 
 
 @dataclass(frozen=True, eq=False)
-class WithLeast(Contrast):
+class WithLeast(Difference):
     mde: float | None = None
     """Least detectable difference, in place of the one that would be computed."""
 
@@ -50,9 +50,9 @@ def given_least(monkeypatch):
 
 
 def shown(value: float, interval: Interval, n_scenes=100, test=None, mde=None) -> Contrast:
-    """Return a difference with this interval, and a notable size of 20 pp."""
+    """Return a difference with this interval, of which 20 pp are telling."""
     draws = np.empty(0) if interval is None else np.repeat(interval, 50)
-    return WithLeast(value, "pp", n_scenes, draws=draws, test=test, notable=20.0, mde=mde)
+    return WithLeast(value, "pp", n_scenes, draws=draws, test=test, telling=20.0, mde=mde)
 
 
 def found(interval: Interval, p_value: float | None = None, mde: float | None = 8.0) -> Contrast:

@@ -1,8 +1,10 @@
 """Outcomes and measurements of the studies' runs, as tables, figures and claims read them."""
 
+import math
 from collections.abc import Callable, Collection
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -13,7 +15,7 @@ from faultpath.stats.estimate import Estimate
 from faultpath.stats.resamples import Resamples
 from faultpath.system import Outcome, Status
 from faultpath_paper.cells import Cell
-from faultpath_paper.detection import enough
+from faultpath_paper.detection import Difference, enough
 from faultpath_paper.evidence.table import EvidenceTable, Measured, Measurement
 
 
@@ -117,11 +119,12 @@ Quantity = Callable[[Results], Contrast]
 """Computes a number from a run, for tables and claims; raises `NotRun` or `Undecidable`."""
 
 
-def decisive(contrast: Contrast, notable: float | None = None) -> Contrast:
+def decisive(contrast: Contrast, telling: float = math.inf) -> Difference:
     """Return a contrast without its interval where too few scenes give it.
 
-    `notable` as in `Contrast`.
+    `telling` as in `Difference`.
     """
-    if enough(contrast):
-        return replace(contrast, notable=notable)
-    return replace(contrast, notable=notable, draws=np.empty(0), scenes=None)
+    shown = contrast if enough(contrast) else replace(contrast, draws=np.empty(0), scenes=None)
+    values: dict[str, Any] = {field.name: getattr(shown, field.name) for field in fields(shown)}
+    values["telling"] = telling
+    return Difference(**values)

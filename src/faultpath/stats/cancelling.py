@@ -9,7 +9,7 @@ system look like interactions, because of floor and ceiling.
 """
 
 from collections.abc import Mapping, Set
-from typing import Literal, NamedTuple, TypeAlias, TypeVar
+from typing import Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -26,7 +26,6 @@ REGAINED = 0.5
 _DIGITS = 9
 """Digits of means over seeds, so that equal ones differ by exactly 0."""
 Key: TypeAlias = tuple[int, int]
-Name = TypeVar("Name", int, Key)
 
 
 class StageOne(NamedTuple):
@@ -124,8 +123,8 @@ def cancelling(
     alone = _singles(none, singles, alpha / 2.0)
     compared = _compared(none, singles, pairs) if pairs else {}
     hurt = [key for key in compared if all(alone[error].kind == "hurts" for error in key)]
-    corrected = _holm({key: compared[key].p_value for key in hurt})
-    covers = _holm(
+    corrected = holm({key: compared[key].p_value for key in hurt})
+    covers = holm(
         {
             key: max(compared[key].p_value, 2.0 * alone[compared[key].worse].p_value)
             for key in same_source
@@ -178,7 +177,7 @@ def ahead(first: Floats, second: Floats) -> Floats:
 
 def _singles(none: Floats, singles: Floats, alpha: float) -> tuple[Single, ...]:
     hurts, helps = ahead(none, singles), ahead(singles, none)
-    corrected, helping = (_holm(dict(enumerate(map(float, p)))) for p in (hurts, helps))
+    corrected, helping = (holm(dict(enumerate(map(float, p)))) for p in (hurts, helps))
     known = ~np.isnan(none - singles)
     means = (
         _means(np.where(known, values, np.nan))
@@ -229,9 +228,3 @@ def _means(values: Floats) -> Floats:
     known = ~np.isnan(values)
     with np.errstate(invalid="ignore"):
         return np.nansum(values, axis=-1) / known.sum(axis=-1)
-
-
-def _holm(p_values: Mapping[Name, float]) -> dict[Name, float]:
-    names = {str(name): p for name, p in p_values.items()}
-    adjusted = holm(names, dict.fromkeys(names, 1.0))
-    return {name: adjusted[str(name)] for name in p_values}

@@ -5,7 +5,6 @@ for newly trained models: a few trainings do not determine their own spread.
 """
 
 from functools import lru_cache
-from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,15 +12,13 @@ from numpy.typing import NDArray
 from faultpath.core.streams import generator
 from faultpath.stats import unconditional
 from faultpath.stats.distributions import binomial_cdf, binomial_pmf, likely
-from faultpath.stats.estimate import ALPHA
+from faultpath.stats.estimate import ALPHA, FixedSize
 from faultpath.stats.inputs import Floats, Numbers, by_scene_and_seed
 from faultpath.stats.score import degrees_rejects, quantile, reach, rejects
 
-FixedSize: TypeAlias = Literal["unconditional", "conditional"]
-"""Tests of a number of scenes that was fixed beforehand; see `estimate.TestKind`."""
-
 LEVEL = 0.95
 """Level of the interval that has to exclude 0 too."""
+POWER = 0.8
 AUDITS = 2000
 """Simulated audits, where power has no closed form."""
 _PRECISION = 1e-3
@@ -147,10 +144,9 @@ def detectable(
     *,
     test: FixedSize = "unconditional",
     alpha: float = ALPHA,
-    power: float = 0.8,
     on_top: bool = False,
 ) -> float | None:
-    """Return the detectable difference in success (pp), given the pairs of an audit.
+    """Return the difference in success (pp) detected with 80 % power, given an audit's pairs.
 
     ``pairs`` [scenes, seeds] are 1, 0 or -1, and NaN where an outcome is missing.
 
@@ -188,10 +184,10 @@ def detectable(
         lean = difference / share
         return simulated_power(n_scenes, n_seeds, share, lean, alike, alpha, test)
 
-    if reached(1.0) < power:
+    if reached(1.0) < POWER:
         return None
     low, high = 0.0, 1.0
     while high - low > _PRECISION * high:
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if reached(middle) >= power else (middle, high)
+        low, high = (low, middle) if reached(middle) >= POWER else (middle, high)
     return 100.0 * high

@@ -1,5 +1,6 @@
 """Quantities of paired trials: differences between cells, and differences of differences."""
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from typing import TypeAlias
@@ -106,7 +107,7 @@ def combined(*terms: tuple[float, Pair], effect: Effect = succeeded) -> Quantity
     def quantity(results: Results) -> Contrast:
         contrasts = together(results, *(pair for _, pair in terms), effect=effect)
         summed = weighted_sum([weight for weight, _ in terms], contrasts)
-        return decisive(summed, TELLING_PP if summed.unit == "pp" else None)
+        return decisive(summed, TELLING_PP if summed.unit == "pp" else math.inf)
 
     return quantity
 
