@@ -1,4 +1,4 @@
-"""The contrasts of an audit, tested together."""
+"""The contrasts of an audit, tested together; several sizes of a fault as one family."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -6,30 +6,27 @@ from functools import partial
 
 import numpy as np
 
-from faultpath.analyses.compared import Outcomes, PairedTrials, compared
 from faultpath.analyses.contrasts import (
     Design,
+    Outcomes,
+    PairedTrials,
     alpha_shares,
     change_name,
+    compared,
     default_primary,
     effect_name,
     isolated,
 )
 from faultpath.analyses.facts import ComparisonFacts, Question
-from faultpath.analyses.missing import (
-    Correct,
-    MissingOutcomes,
-    failed_unevenly,
-    missing_outcomes,
-)
-from faultpath.analyses.model import SHARED, Condition
+from faultpath.analyses.missing import Correct, MissingOutcomes, failed_unevenly, missing_outcomes
+from faultpath.analyses.model import SHARED, AuditResult, Condition
 from faultpath.core.errors import UserError
 from faultpath.run.question import FEWEST_TRAININGS
 from faultpath.run.trials import Trials
 from faultpath.stats import betting
 from faultpath.stats.contrast import Contrast, ordered_sum
-from faultpath.stats.decisions import Turn, decide_family, turn
-from faultpath.stats.estimate import ALPHA
+from faultpath.stats.decisions import Turn, decide_family, holm, turn
+from faultpath.stats.estimate import ALPHA, Sign
 from faultpath.stats.power import fewest_scenes
 
 
@@ -42,7 +39,7 @@ class TestedContrasts:
     changes: Mapping[str, Contrast]
     """Shared minus isolated, by the isolated condition."""
     turns: Mapping[str, Turn]
-    """What sharing does to the effect, by the isolated condition."""
+    """Effect of sharing the fault, by the isolated condition."""
     hypotheses: int
     scenes_needed: int
     design: Design
@@ -61,7 +58,7 @@ class TestedContrasts:
             effects=not_significant(self.effects),
             changes=not_significant(self.changes),
             turns=dict.fromkeys(self.turns, "none"),
-            missing=replace(self.missing, unsettled=(), reruns={}),
+            missing=replace(self.missing, inconclusive=(), reruns={}),
         )
 
 
@@ -111,8 +108,8 @@ def decide_conditions(
     """Return every contrast of an audit with its corrected test, from successes `[scenes, seeds]`
     by condition, not a number where a trial has no outcome.
 
-    This is the rule of `faultpath audit`, without words and without secondary outcomes, and what
-    simulations of its error rates call. The family holds the effect under every condition and every
+    This is the rule of `faultpath audit`, without words and secondary outcomes; simulations of its
+    error rates call it. The family holds the effect under every condition and every
     change from an isolated condition to `SHARED`, each over the scenes that have its trials. Holm's
     procedure, weighted with `alpha_shares` for the `primary` condition, runs over all of them at
     `alpha`. Conditions in `untested` (the fault never acted there) take no part. `models` speaks of
@@ -135,7 +132,7 @@ def decide_conditions(
     corrected = correct(contrasts)
 
     missing = missing_outcomes(design, tested, success, corrected, correct)
-    corrected |= {name: _not_significant(corrected[name]) for name in missing.unsettled}
+    corrected |= {name: _not_significant(corrected[name]) for name in missing.inconclusive}
 
     effects = {
         condition: corrected.get(effect_name(condition)) or design.effect(*pair)
@@ -178,3 +175,46 @@ def _turn(
 
 def _not_significant(contrast: Contrast) -> Contrast:
     return replace(contrast, test=contrast.test and contrast.test._replace(sign=0))
+
+
+def tested_contrasts(result: AuditResult) -> dict[str, tuple[float, float]]:
+    """Return p and weight of every contrast that was tested, by its name."""
+    tested = [effect for effect in result.effects if effect.corrected_p is not None]
+    p_values = {effect_name(effect.condition): effect.p_value for effect in tested}
+    p_values |= {change_name(change.isolated): change.p_value for change in result.changes}
+    parts = alpha_shares([effect.condition for effect in tested], result.facts.primary)
+    return {name: (p, parts[name]) for name, p in p_values.items()}
+
+
+def decide_sizes(
+    results: Sequence[AuditResult], once: Collection[str] = ()
+) -> list[dict[str, tuple[Sign, float]]]:
+    """Return for each size of a fault, by condition, the side that is significantly ahead over all
+    sizes, and the adjusted p.
+
+    Holm's procedure over every contrast of every size, weighted as each audit by itself: whatever
+    is significant then holds with an error of at most 5 % for all sizes together, and is so in its
+    own audit too. Contrasts named in `once` are the same trials at every size, and one.
+    """
+
+    def key(size: int, name: str) -> str:
+        return name if name in once else f"{size}/{name}"
+
+    tested = {
+        key(size, name): contrast
+        for size, result in enumerate(results)
+        for name, contrast in tested_contrasts(result).items()
+    }
+    adjusted = holm(
+        {name: p for name, (p, _) in tested.items()},
+        {name: weight for name, (_, weight) in tested.items()},
+    )
+    families: list[dict[str, tuple[Sign, float]]] = []
+    for size, result in enumerate(results):
+        family: dict[str, tuple[Sign, float]] = {}
+        for effect in result.effects:
+            if effect.corrected_p is not None:
+                p = adjusted[key(size, effect_name(effect.condition))]
+                family[effect.condition] = effect.sign if p <= ALPHA else 0, p
+        families.append(family)
+    return families

@@ -6,9 +6,9 @@ from pathlib import Path
 from platform import python_version
 
 from faultpath.analyses.audit import audit_analysis
-from faultpath.analyses.examples import choose as picked
 from faultpath.analyses.model import AuditResult
 from faultpath.analyses.pairs import by_scene, read_pairs
+from faultpath.analyses.pairs import choose as picked
 from faultpath.analyses.parting import Heard, Parting, parting
 from faultpath.api.folders import RECORD
 from faultpath.api.systems import check_named, choose

@@ -4,8 +4,8 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from faultpath.analyses.map.lattice import SHARED
 from faultpath.analyses.map.model import MapResult
+from faultpath.analyses.model import SHARED
 from faultpath.core.text import counted
 from faultpath.report.frame import render, write_pages
 from faultpath.report.map_pictures import correlation_picture, map_picture

@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.analyses.examples import alike, choose
 from faultpath.analyses.model import SHARED, AuditResult
-from faultpath.analyses.pairs import Pair, by_scene, is_sample
+from faultpath.analyses.pairs import Pair, alike, by_scene, choose, is_sample
 from faultpath.analyses.parting import Heard, parting
 from faultpath.report.inputs import ReportInput
 from faultpath.report.plots import Plot, first_plot, plots_of

@@ -7,15 +7,14 @@ from pathlib import PurePath
 
 import numpy as np
 
-from faultpath.analyses.analysis import Analysis, Round, Rounds
-from faultpath.analyses.compared import compared
+from faultpath.analyses.analysis import Analysis, Round, Rounds, rows_of, scenes_of, two_variants
+from faultpath.analyses.contrasts import compared
 from faultpath.analyses.facts import facts_of, question_of
-from faultpath.analyses.map.decide import decided
+from faultpath.analyses.map.decide import concluded
 from faultpath.analyses.map.lattice import COARSE, Point, lattice
 from faultpath.analyses.map.model import MapFacts, MapResult
 from faultpath.analyses.map.surface import Differences, next_points
 from faultpath.analyses.model import CORRECT
-from faultpath.analyses.planning import rows_of, scenes_of, two_variants
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed
 from faultpath.faults import Fault, FaultText, at_readers, describe, reaching
@@ -75,7 +74,7 @@ class MapAnalysis(Analysis[list[Point]]):
         """
         differences, unpaired = self.differences(sorted(items), trials)
         findings = (*Unpaired.first_of(unpaired), *deliveries.findings)
-        return decided(self.question, self.facts, differences, int(trials.failed.sum()), findings)
+        return concluded(self.question, self.facts, differences, int(trials.failed.sum()), findings)
 
     def condition(self, point: Point) -> str:
         """Return what rows of a point are called in the outcome table."""
@@ -118,9 +117,9 @@ class MapAnalysis(Analysis[list[Point]]):
         met different conditions; `UserError` where a point has no pair."""
         names = [self.condition(point) for point in points]
         comparison = compared(self.question.repair, self.question.baseline, names, trials)
-        if comparison.void:
+        if comparison.missing:
             raise UserError(
-                f"at the errors {' and '.join(comparison.void[:3])} no pair is left to compare, "
+                f"at the errors {' and '.join(comparison.missing[:3])} no pair is left to compare, "
                 "because trials failed there: fix what made them fail, or choose a smaller "
                 "--up-to."
             )

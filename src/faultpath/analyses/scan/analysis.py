@@ -5,10 +5,9 @@ from dataclasses import dataclass, field, replace
 from itertools import combinations
 from pathlib import PurePath
 
-from faultpath.analyses.analysis import Analysis, Round, Rounds
+from faultpath.analyses.analysis import Analysis, Round, Rounds, rows_of, scenes_of
 from faultpath.analyses.facts import facts_of, question_of
 from faultpath.analyses.model import CORRECT
-from faultpath.analyses.planning import rows_of, scenes_of
 from faultpath.analyses.scan.decide import concluded, going_on, hurting, losses
 from faultpath.analyses.scan.errors import (
     Scanned,

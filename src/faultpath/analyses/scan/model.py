@@ -14,7 +14,7 @@ from faultpath.stats.estimate import Sign
 
 
 class ScanFacts(Facts):
-    """What a system and its library told of a scan."""
+    """Facts of a scan."""
 
     other: str = ""
     """The only other variant of the system; empty where there are none or several."""
@@ -151,7 +151,7 @@ class ScanResult(Result):
     failed: int
     """Trials in which the program raised an error."""
     findings: tuple[Finding, ...] = ()
-    """What was found in its trials."""
+    """Findings in its trials."""
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
