@@ -164,18 +164,10 @@ def detectable(
     ran = seeds != _MISSING
     seeds = np.where(ran, seeds, 0.0)
     n_scenes, n_seeds = seeds.shape
-    rate, alike = float(np.abs(seeds).sum() / ran.sum()), 1.0
+    rate = float(np.abs(seeds).sum() / ran.sum())
+    alike = _share_alike(seeds, ran, rate) if rate > 0.0 and n_seeds > 1 else 1.0
     if rate == 0.0:
         rate = 1.0 - ((1.0 - LEVEL) / 2.0) ** (1.0 / n_scenes)
-    elif n_seeds > 1:
-        # Two seeds' product has the mean ``alike * rate + (1 - alike) * mean ** 2``. Prior counts
-        # are added on either side, because few discordant pairs tell little.
-        sums = seeds.sum(axis=1) ** 2 - np.abs(seeds).sum(axis=1)
-        together = ran.sum(axis=1) * (ran.sum(axis=1) - 1)  # ordered pairs of a scene's seeds
-        products = n_scenes * float(sums.sum()) / max(1, int(together.sum()))
-        by_chance = n_scenes * float(seeds.sum() / ran.sum()) ** 2
-        seen = n_scenes * rate - by_chance + _PRIOR_SCENES
-        alike = min(1.0, max(0.0, (products - by_chance + _PRIOR_ALIKE * _PRIOR_SCENES) / seen))
 
     def reached(difference: float) -> float:
         share = min(1.0, rate + difference if on_top else max(rate, difference))
@@ -191,3 +183,18 @@ def detectable(
         middle = 0.5 * (low + high)
         low, high = (low, middle) if reached(middle) >= POWER else (middle, high)
     return 100.0 * high
+
+
+def _share_alike(seeds: Floats, ran: NDArray[np.bool_], rate: float) -> float:
+    """Return the estimated share of scenes that treat all seeds alike.
+
+    Two seeds' product has the mean ``alike * rate + (1 - alike) * mean ** 2``. Prior counts are
+    added on either side, because few discordant pairs tell little.
+    """
+    n_scenes = len(seeds)
+    sums = seeds.sum(axis=1) ** 2 - np.abs(seeds).sum(axis=1)
+    together = ran.sum(axis=1) * (ran.sum(axis=1) - 1)  # ordered pairs of a scene's seeds
+    products = n_scenes * float(sums.sum()) / max(1, int(together.sum()))
+    by_chance = n_scenes * float(seeds.sum() / ran.sum()) ** 2
+    seen = n_scenes * rate - by_chance + _PRIOR_SCENES
+    return min(1.0, max(0.0, (products - by_chance + _PRIOR_ALIKE * _PRIOR_SCENES) / seen))
