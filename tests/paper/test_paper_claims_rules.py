@@ -195,6 +195,13 @@ def test_the_least_detectable_effect_is_that_of_the_resamples() -> None:
     assert not gone.draws.any()
 
 
+def test_a_difference_keeps_what_it_is_and_the_size_that_a_run_must_be_able_to_detect():
+    few, many = mean([0.1, 0.9]), effect(N, 4, 0)
+    assert (decisive(few, 0.2).telling, decisive(few).interval) == (0.2, None)
+    kept = decisive(many, 20.0)
+    assert (kept.telling, kept.interval, kept.test) == (20.0, many.interval, many.test)
+
+
 def test_the_least_detectable_change_is_that_of_the_interval_that_decides():
     """The bootstrap of 25 equal scenes has no spread, and its change no detectable size."""
     drawn = Resamples.draw("claims", 25)

@@ -240,5 +240,5 @@ def with_earlier_analyses(result: AuditResult, earlier: Iterable[AuditResult]) -
     known: list[EarlierAnalysis] = []
     for other in earlier:
         known += other.earlier if other.few else (*other.earlier, analysis(other))
-    others = tuple(one for one in dict.fromkeys(known) if one != analysis(result))
+    others = tuple(other for other in dict.fromkeys(known) if other != analysis(result))
     return result.model_copy(update={"earlier": others})

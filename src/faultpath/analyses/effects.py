@@ -28,14 +28,14 @@ class Missing(Result):
     """The difference over all scenes where all trials that failed go against the repair; `None`
     where none failed under any condition."""
     favour_pp: float | None = None
-    """Where they go for it."""
+    """The same where they go for it."""
     uneven: bool = False
     """Whether one version failed more often than chance explains: no headline rests on it."""
     unsettled: bool = False
     """Whether it would be significant, if failed trials could not undo that."""
     reruns: tuple[int, int] | None = None
-    """Where they could: how many failed trials of the repair and of the baseline have to run to
-    make it significant, if they come out as the others did."""
+    """If so: how many failed trials of the repair and of the baseline have to run to make it
+    significant, if they come out as the others did."""
 
 
 class AtThreshold(Result):
@@ -143,7 +143,7 @@ class Effect(Difference):
 
 
 class Change(Difference):
-    """How the effect changes from a fault at one module to the shared one."""
+    """Change of the effect from a fault at one module to the shared one."""
 
     isolated: str
     unsettled: bool = False

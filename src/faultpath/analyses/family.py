@@ -49,14 +49,10 @@ class TestedContrasts:
 
     def without_claims(self) -> "TestedContrasts":
         """Return the contrasts of trials that support no result: none is significant."""
-
-        def not_significant(contrasts: Mapping[str, Contrast]) -> dict[str, Contrast]:
-            return {name: _not_significant(contrast) for name, contrast in contrasts.items()}
-
         return replace(
             self,
-            effects=not_significant(self.effects),
-            changes=not_significant(self.changes),
+            effects={name: _not_significant(effect) for name, effect in self.effects.items()},
+            changes={name: _not_significant(change) for name, change in self.changes.items()},
             turns=dict.fromkeys(self.turns, "none"),
             missing=replace(self.missing, inconclusive=(), reruns={}),
         )

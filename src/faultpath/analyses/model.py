@@ -90,7 +90,7 @@ class VariantCounts(Result):
 
 
 class Ahead(Result):
-    """Where along a share, of faulty episodes or of common causes, a version is ahead."""
+    """Part of a share, of faulty episodes or of common causes, in which a version is ahead."""
 
     sign: Literal[-1, 1]
     where: Literal["everywhere", "many", "few", "from", "up to"]
@@ -119,7 +119,7 @@ class ConditionBreakEven(Result):
 
 
 class Testing(Result):
-    """How the effects and changes of an audit are tested together."""
+    """Common test of the effects and changes of an audit."""
 
     hypotheses: int
     """Number of contrasts that share the error rate of 5 %."""
@@ -130,7 +130,7 @@ class Testing(Result):
 
 
 class StoppedAudit(Result):
-    """How far a sequential audit went."""
+    """End of a sequential audit."""
 
     scenes: int
     """Scenes that were run; missing pairs included."""

@@ -31,19 +31,12 @@ Successes: TypeAlias = Mapping[str, Floats]
 has no outcome."""
 
 
-def losses(
-    question: ScanQuestion, errors: Sequence[ScanError], trials: Trials, scenes: Sequence[str]
-) -> list[list[float]]:
-    """Return what each error cost in the first stage, percentage points, by variant."""
-    return [stage.losses.tolist() for stage in _stages(question, errors, trials, scenes)]
-
-
 def going_on(
     question: ScanQuestion, errors: Sequence[ScanError], trials: Trials, scenes: Sequence[str]
 ) -> tuple[int, ...]:
     """Return the errors that hurt in a variant and go on, the worst first."""
     worst: dict[int, float] = {}
-    for stage in _stages(question, errors, trials, scenes):
+    for stage in first_stages(question, errors, trials, scenes):
         for error in stage.hurting:
             worst[error] = max(float(stage.losses[error]), worst.get(error, 0.0))
     return tuple(sorted(worst, key=lambda error: (-worst[error], error))[:MOST])
@@ -55,15 +48,16 @@ def hurting(
     """Return the sources and signs of which an error is seen to cost success in some variant."""
     return {
         (error.source, error.sign)
-        for stage in _stages(question, errors, trials, scenes)
+        for stage in first_stages(question, errors, trials, scenes)
         for error, p_value in zip(errors, stage.p_values.tolist(), strict=True)
         if p_value < LEVEL
     }
 
 
-def _stages(
+def first_stages(
     question: ScanQuestion, errors: Sequence[ScanError], trials: Trials, scenes: Sequence[str]
 ) -> Iterable[StageOne]:
+    """Yield how the errors did alone in the first stage, by variant."""
     for variant in question.variants:
         success, _ = successes(trials, variant, [label([error]) for error in errors], scenes)
         yield stage_one(success[CORRECT], np.stack([success[label([e])] for e in errors]))
@@ -103,10 +97,7 @@ def concluded(
     trials: Trials,
     deliveries: Deliveries,
 ) -> ScanResult:
-    """Return the result of a scan.
-
-    Raises `UserError` where no trial of a condition is left.
-    """
+    """Return the result of a scan; `UserError` where no trial of a condition is left."""
     unpaired: list[Unpaired] = []
     versions = [_version(name, scanned, trials, unpaired) for name in question.variants]
     findings = (*Unpaired.first_of(unpaired), *deliveries.findings)
@@ -229,7 +220,7 @@ def _together(
 
 
 def _without_claims(version: ScannedVersion) -> ScannedVersion:
-    """Return the numbers of trials from which nothing follows."""
+    """Return the numbers of a version without the kinds that would follow from them."""
     none = {"kind": None, "covering": None}
     return version.model_copy(
         update={
