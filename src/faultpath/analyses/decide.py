@@ -40,7 +40,7 @@ def decide(
     different conditions. Where there are such, or trials did not repeat, nothing is significant.
 
     `UserError` when no pair is left under any condition, for a primary condition that the audit
-    does not have, and where newly trained models are asked for and too few trainings differ.
+    does not have, and where the question is of newly trained models and too few trainings differ.
     """
     primary = primary_condition(question.primary or "", conditions)
     facts = facts.model_copy(update={"primary": primary})

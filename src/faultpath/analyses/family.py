@@ -41,7 +41,9 @@ class TestedContrasts:
     turns: Mapping[str, Turn]
     """Effect of sharing the fault, by the isolated condition."""
     hypotheses: int
+    """Number of contrasts that share the error rate."""
     scenes_needed: int
+    """With fewer, nothing can be significant."""
     design: Design
     missing: MissingOutcomes
     uneven: Collection[str]
@@ -67,7 +69,7 @@ def family_of(
 ) -> tuple[PairedTrials, TestedContrasts]:
     """Return the paired trials of an audit, and their contrasts.
 
-    `UserError` when no pair is left, and where newly trained models are asked for and too few
+    `UserError` when no pair is left, and where the question is of newly trained models and too few
     trainings gave different outcomes.
     """
     names = [condition.name for condition in conditions]
@@ -105,14 +107,14 @@ def decide_conditions(
     by condition, not a number where a trial has no outcome.
 
     This is the rule of `faultpath audit`, without words and secondary outcomes; simulations of its
-    error rates call it. The family holds the effect under every condition and every
-    change from an isolated condition to `SHARED`, each over the scenes that have its trials. Holm's
-    procedure, weighted with `alpha_shares` for the `primary` condition, runs over all of them at
-    `alpha`. Conditions in `untested` (the fault never acted there) take no part. `models` speaks of
-    newly trained models as well. `shares` of `alpha`, by the names of `alpha_shares`, say that the
-    audit was sequential: what is significant then is so at whatever scene it stopped, each contrast
-    at its own share. Where trials are missing, what is significant has to be so too with all of
-    them against it.
+    error rates call it. The family holds the effect under every condition and every change from an
+    isolated condition to `SHARED`, each over the scenes that have its trials. Holm's procedure,
+    weighted with `alpha_shares` for the `primary` condition, corrects all of them at `alpha`.
+    Conditions in `untested` (the fault never acted there) take no part. With `models` contrasts
+    hold for newly trained models as well. `shares` of `alpha`, by the names of `alpha_shares`, are
+    those of a sequential audit: each contrast is tested at its own share, at whatever scene the
+    audit stopped. Where trials are missing, a significant contrast has to be so with all of them
+    against it too.
     """
     success = {
         condition: (np.asarray(one, np.float64), np.asarray(two, np.float64))
@@ -120,16 +122,19 @@ def decide_conditions(
     }
     design = Design(models, sequential=shares is not None)
     tested = [condition for condition in success if condition not in untested]
-    contrasts = design.contrasts(tested, success)
 
+    # Every effect and change with its test, then corrected together.
+    contrasts = design.contrasts(tested, success)
     parts = alpha_shares(tested, default_primary(primary, success))
     weights = {name: parts[name] for name in contrasts}
     correct: Correct = partial(decide_family, alpha=alpha, shares=shares, weights=weights)
     corrected = correct(contrasts)
 
+    # A contrast that missing trials could undo is not significant.
     missing = missing_outcomes(design, tested, success, corrected, correct)
     corrected |= {name: _not_significant(corrected[name]) for name in missing.inconclusive}
 
+    # By condition again; without correction where the fault never acted.
     effects = {
         condition: corrected.get(effect_name(condition)) or design.effect(*pair)
         for condition, pair in success.items()
@@ -162,7 +167,7 @@ def decide_conditions(
 def _turn(
     condition: str, effects: Mapping[str, Contrast], moved: Contrast, uneven: Collection[str]
 ) -> Turn:
-    """Return what sharing does to the effect under an isolated condition; no reversal rests on a
+    """Return the effect of sharing the fault, from an isolated condition; no reversal rests on a
     condition where the trials of one version failed more often."""
     if condition in uneven or SHARED in uneven:
         return "interaction" if moved.sign else "none"

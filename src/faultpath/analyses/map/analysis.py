@@ -85,8 +85,8 @@ class MapAnalysis(Analysis[list[Point]]):
         """Return the plan of all points. Variants that a fault cannot reach run once.
 
         Equal errors are one fault that is shared, as in an audit. Plans of one fault,
-        pair of modules, range, library and seeds have the same name, whatever spread or number of
-        points is asked for.
+        pair of modules, range, library and seeds have the same name, whatever the spread and the
+        number of points.
         """
         question, facts, rows = self.question, self.facts, list[Row]()
         for point in points:
