@@ -143,7 +143,6 @@ def audit_analysis(
 
 
 def _condition(name: str, repair: Sequence[Fault], baseline: Sequence[Fault]) -> Condition:
-    """Return a condition of the fault, with what it reaches in each variant."""
     readers, baseline_readers = (
         tuple(dict.fromkeys(reader for fault in faults for reader in fault.readers))
         for faults in (repair, baseline)

@@ -288,7 +288,6 @@ def _variants(system: System, request: ScanQuestion) -> tuple[Variant, ...]:
 
 
 def _nothing_sized(system: System, every: Sequence[Candidate]) -> UserError:
-    """Return the error of a system of which no source has a size."""
     if not every:
         return UserError(f"{system.name}: no version reads a source that may err: nothing to scan.")
     why = "; ".join(f"{candidate.name} {candidate.unsized}" for candidate in every)

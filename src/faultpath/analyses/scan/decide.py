@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
@@ -23,7 +23,7 @@ from faultpath.core.errors import UserError
 from faultpath.run import Deliveries, Group, Trials, pair
 from faultpath.run.findings import Unpaired
 from faultpath.run.question import ScanQuestion
-from faultpath.stats.cancelling import LEVEL, MOST, Pair, StageOne, cancelling, stage_one
+from faultpath.stats.cancelling import LEVEL, MOST, StageOne, cancelling, stage_one
 from faultpath.stats.inputs import Floats
 
 Successes: TypeAlias = Mapping[str, Floats]
@@ -155,7 +155,7 @@ def _first_stage(
     none = success[CORRECT]
     alone = [success[label([error])] for error in tried]
     stage = stage_one(none, np.stack(alone))
-    tested = cancelling(none, np.stack(alone), {}, set()).singles
+    tested = cancelling(none, dict(enumerate(alone)), {}, set()).singles
     return tuple(
         FirstStage(
             error=error,
@@ -176,30 +176,17 @@ def _second_stage(
     """Return what the errors did alone and in pairs, by the decisions of a scan."""
     if not scanned.singles:
         return (), ()
-    at = {error: place for place, error in enumerate(scanned.singles)}
-    keys = {(at[a], at[b]): (a, b) for a, b in scanned.pairs}
-    sources = [scanned.errors[error].source for error in scanned.singles]
+    source = [error.source for error in scanned.errors]
     result = cancelling(
         success[()],
-        np.stack([success[error,] for error in scanned.singles]),
-        {key: success[errors] for key, errors in keys.items()},
-        {key for key in keys if sources[key[0]] == sources[key[1]]},
+        {error: success[error,] for error in scanned.singles},
+        {errors: success[errors] for errors in scanned.pairs},
+        {(a, b) for a, b in scanned.pairs if source[a] == source[b]},
     )
-    singles = tuple(
-        SecondStage(error=error, **single._asdict())
-        for error, single in zip(scanned.singles, result.singles, strict=True)
+    return (
+        tuple(SecondStage(error=at, **single._asdict()) for at, single in result.singles.items()),
+        tuple(ScannedPair(errors=at, **pair._asdict()) for at, pair in result.pairs.items()),
     )
-    pairs = tuple(
-        _in_errors(errors, scanned.singles, result.pairs[key]) for key, errors in keys.items()
-    )
-    return singles, pairs
-
-
-def _in_errors(errors: tuple[int, int], singles: Sequence[int], pair: Pair) -> ScannedPair:
-    numbers: dict[str, Any] = pair._asdict()
-    numbers["worse"] = singles[pair.worse]
-    numbers["covering"] = None if pair.covering is None else singles[pair.covering]
-    return ScannedPair(errors=errors, **numbers)
 
 
 def _together(
