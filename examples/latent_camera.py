@@ -39,7 +39,6 @@ from faultpath.system import (
     Progress,
     SceneRef,
     Status,
-    Wiring,
     interface_of,
 )
 
@@ -298,9 +297,9 @@ class LatentCamera(LoopSystem):
         self.rooms, self.folder = rooms, folder
 
     @property
-    def wirings(self):
+    def descriptions(self):
         names = VARIANTS if self.rooms == "marked" else BLANK
-        return {name: Wiring(VARIANTS[name]) for name in names}
+        return {name: VARIANTS[name] for name in names}
 
     @cached_property
     def interface(self):

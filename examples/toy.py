@@ -34,7 +34,6 @@ from faultpath.system import (
     SceneRef,
     Status,
     System,
-    Wiring,
     interface_of,
 )
 
@@ -185,9 +184,9 @@ class Toy(LoopSystem):
         )
     }
     ends = {Status.TIMEOUT: "missed"}  # noqa: RUF012 - never changed
-    wirings = {  # noqa: RUF012 - never changed
-        "calibrated": Wiring("The observer works with the gain estimate, right or wrong."),
-        "blind": Wiring("The observer takes the nameplate's gain, 1, and no estimate."),
+    descriptions = {  # noqa: RUF012 - never changed
+        "calibrated": "The observer works with the gain estimate, right or wrong.",
+        "blind": "The observer takes the nameplate's gain, 1, and no estimate.",
     }
     # Only for the report: what the controller believes of the acceleration, minus the truth.
     errors = ErrorSum(

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import yaml
 
-from faultpath.analyses.compared import compared
+from faultpath.analyses.contrasts import compared
 from faultpath.analyses.family import TestedContrasts, decide_conditions
 from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.faults import at_readers

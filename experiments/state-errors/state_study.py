@@ -20,7 +20,7 @@ import torch
 from faultpath_quadrotor.state_errors import TURNING, state_errors
 from state_design import Audit, Design, ErrorSize, SensorAudits
 
-from faultpath.analyses.compared import compared
+from faultpath.analyses.contrasts import compared
 from faultpath.analyses.family import decide_conditions
 from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.api.display import Display, SafeConsole

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from outcome_tables import BASELINE, REPAIR
 
-from faultpath.analyses.map.decide import decided
+from faultpath.analyses.map import decide
 from faultpath.analyses.map.lattice import COARSE, UNITS, Point, lattice
 from faultpath.analyses.map.model import MapFacts, MapResult
 from faultpath.analyses.map.surface import Differences, next_points
@@ -34,7 +34,7 @@ Seen = Callable[[float, float], tuple[np.ndarray, np.ndarray]]
 
 
 def concluded(differences: Differences, *findings: Finding) -> MapResult:
-    return decided(QUESTION, FACTS, differences, findings=findings)
+    return decide.concluded(QUESTION, FACTS, differences, findings=findings)
 
 
 def differences(seen: Seen, points: tuple[Point, ...], seeds: int = 1) -> Differences:
@@ -53,7 +53,7 @@ def grown(seen: Seen, limit: int = 81) -> Differences:
 
 
 def record(seen: Seen, **facts: object) -> MapResult:
-    return decided(QUESTION, FACTS.model_copy(update=facts), grown(seen))
+    return decide.concluded(QUESTION, FACTS.model_copy(update=facts), grown(seen))
 
 
 def reversal(scenes: int) -> Seen:

@@ -8,7 +8,7 @@ from map_toys import Seen, alike, concluded, differences, grown, record, reversa
 from outcome_tables import SPOILS
 from pydantic import ValidationError
 
-from faultpath.analyses.map.joint import Errors, lattice_weights
+from faultpath.analyses.map.decide import Errors, lattice_weights
 from faultpath.analyses.map.lattice import COARSE, SHOWN, UNITS, lattice, surface_weights
 from faultpath.analyses.map.model import MapResult
 from faultpath.analyses.map.surface import Combined, Differences

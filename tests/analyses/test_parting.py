@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from faultpath.analyses.facts import ComparisonFacts
-from faultpath.analyses.parting import Heard, Parting, parting
+from faultpath.analyses.parting import Parting, Recorded, parting
 from faultpath.interface import read_interface
 from faultpath.report.sentences.parting import compared, ending, parted
 from faultpath.run.shown import SystemShown, VariantShown
@@ -63,7 +63,7 @@ def shown(**bindings: str) -> SystemShown:
 
 def heard(
     variant: str, condition: str = "shared", end: Status | None = Status.SUCCESS, time_s=0.3, **new
-) -> Heard:
+) -> Recorded:
     """Return a trial whose signals are those of `EQUAL`, but for the `new` ones: from a step on
     they have a value."""
     series = {name: values.astype(np.float64).reshape(STEPS, -1) for name, values in EQUAL.items()}
@@ -78,10 +78,10 @@ def heard(
     if end is not None:
         error = "no number" if end is Status.FAILED else None
         outcome = Outcome("door-3", end, time_s, "i", "d", "n", error=error)
-    return Heard(address, outcome, signals)
+    return Recorded(address, outcome, signals)
 
 
-def faulted(trial: Heard, reader: str, got: float) -> Heard:
+def faulted(trial: Recorded, reader: str, got: float) -> Recorded:
     """Return the trial with a fault that lets a reader of the mass get a number from step 1 on."""
     values = np.array([2.0, *[got] * (STEPS - 1)], np.float32)[:, None]
     more = (
@@ -91,7 +91,7 @@ def faulted(trial: Heard, reader: str, got: float) -> Heard:
     return replace(trial, signals=(*trial.signals, *more))
 
 
-def without(trial: Heard, *names: str) -> Heard:
+def without(trial: Recorded, *names: str) -> Recorded:
     return replace(trial, signals=tuple(s for s in trial.signals if s.name not in names))
 
 
@@ -217,7 +217,7 @@ def test_the_end_of_one_trial_is_a_mark_where_the_other_goes_on() -> None:
 
 
 def test_positions_are_the_state_of_trials_without_signals() -> None:
-    def moved(variant: str, to: float) -> Heard:
+    def moved(variant: str, to: float) -> Recorded:
         trace = np.array([[0, 0, 0], [0, to, 0]], np.float32)
         trial = replace(heard(variant), signals=())
         assert trial.outcome is not None

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from faultpath.analyses.scan.probing import command_responses
+from faultpath.analyses.scan.ranking import command_responses
 from faultpath.faults import at_readers
 from faultpath.loop import Batch, Taps
 

@@ -22,7 +22,7 @@ from faultpath_paper.claims.rules import (
     within,
 )
 from faultpath_paper.claims.statement import Turned
-from faultpath_paper.detection import least_detectable, resampled
+from faultpath_paper.detection import Difference, least_detectable, resampled
 from faultpath_paper.results import decisive
 
 from faultpath.stats.contrast import Contrast, change, percentile_interval, weighted_sum
@@ -36,7 +36,7 @@ UP, DOWN, OPEN = (5.0, 15.0), (-15.0, -5.0), (-5.0, 15.0)
 
 
 @dataclass(frozen=True, eq=False)
-class WithLeast(Contrast):
+class WithLeast(Difference):
     mde: float | None = None
     """Least detectable difference, in place of the one that would be computed."""
 
@@ -50,9 +50,9 @@ def given_least(monkeypatch):
 
 
 def shown(value: float, interval: Interval, n_scenes=100, test=None, mde=None) -> Contrast:
-    """Return a difference with this interval, and a notable size of 20 pp."""
+    """Return a difference with this interval, of which 20 pp are telling."""
     draws = np.empty(0) if interval is None else np.repeat(interval, 50)
-    return WithLeast(value, "pp", n_scenes, draws=draws, test=test, notable=20.0, mde=mde)
+    return WithLeast(value, "pp", n_scenes, draws=draws, test=test, telling=20.0, mde=mde)
 
 
 def found(interval: Interval, p_value: float | None = None, mde: float | None = 8.0) -> Contrast:
@@ -193,6 +193,13 @@ def test_the_least_detectable_effect_is_that_of_the_resamples() -> None:
     gone = weighted_sum([0.1, 0.2, -0.3], [one, one, one])  # effects that cancel leave nothing
     assert gone.value == 0
     assert not gone.draws.any()
+
+
+def test_a_difference_keeps_what_it_is_and_the_size_that_a_run_must_be_able_to_detect():
+    few, many = mean([0.1, 0.9]), effect(N, 4, 0)
+    assert (decisive(few, 0.2).telling, decisive(few).interval) == (0.2, None)
+    kept = decisive(many, 20.0)
+    assert (kept.telling, kept.interval, kept.test) == (20.0, many.interval, many.test)
 
 
 def test_the_least_detectable_change_is_that_of_the_interval_that_decides():

@@ -14,7 +14,7 @@ from faultpath_quadrotor.training.pool import Provenance
 from fitting_toys import Toy, entry
 
 from faultpath.core.errors import Stopped, UserError
-from faultpath.learning.tensor_files import encoded
+from faultpath.learning.model_card import encoded
 from faultpath.run.work import processes as processes_of_work
 
 

@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser, expect
 
-from faultpath.analyses.examples import choose
-from faultpath.analyses.pairs import read_pairs
+from faultpath.analyses.pairs import choose, read_pairs
 from faultpath.report.adding import adding, adding_panels
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput

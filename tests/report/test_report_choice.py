@@ -6,9 +6,8 @@ from dataclasses import replace
 import pytest
 from page_reader import unpack
 
-from faultpath.analyses.examples import choose
 from faultpath.analyses.model import AuditResult
-from faultpath.analyses.pairs import Pair, read_pairs
+from faultpath.analyses.pairs import Pair, choose, read_pairs
 from faultpath.report.inputs import ReportInput
 from faultpath.report.viewer import captions, viewer_data
 from faultpath.system import Status

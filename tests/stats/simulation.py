@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import multinomial
 
-from faultpath.analyses.compared import Outcomes as Variants
+from faultpath.analyses.contrasts import Outcomes as Variants
 from faultpath.analyses.contrasts import alpha_shares
 from faultpath.analyses.family import TestedContrasts, decide_conditions
 from faultpath.analyses.model import CORRECT, SHARED

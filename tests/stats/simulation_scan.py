@@ -96,19 +96,13 @@ class Scanned:
         chosen = stage_one(first[0], first[1:]).hurting
         singles, pairs, conditions = self.second_stage(chosen)
         if not singles:
-            return Cancelling((), {})
+            return Cancelling({}, {})
         scenes = scenes or (trials - first.shape[0] * FIRST) // conditions
         added = [0.0, *self.costs[singles], *map(self.together, pairs)]
         none, *others = self.outcomes(added, scenes, stream)
-        place = {error: at for at, error in enumerate(singles)}
-        keys = [(place[a], place[b]) for a, b in pairs]
-        both = dict(zip(keys, others[len(singles) :], strict=True))
-        same = {key for key, (a, b) in zip(keys, pairs, strict=True) if a // 4 == b // 4}
-        result = cancelling(none, np.stack(others[: len(singles)]), both, same)
-        return Cancelling(
-            result.singles,
-            {pair: result.pairs[key] for key, pair in zip(keys, pairs, strict=True)},
-        )
+        alone = dict(zip(singles, others[: len(singles)], strict=True))
+        both = dict(zip(pairs, others[len(singles) :], strict=True))
+        return cancelling(none, alone, both, {(a, b) for a, b in pairs if a // 4 == b // 4})
 
     def together(self, pair: Key) -> float:
         """Return what both errors of a pair add to the difficulty."""

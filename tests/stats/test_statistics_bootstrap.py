@@ -229,7 +229,7 @@ def test_times_of_scenes_that_are_not_joint_are_not_read():
     assert (found.value, found.interval, found.n_scenes) == (1.0, (1.0, 1.0), 15)
     with pytest.raises(ValueError, match="no scene is jointly successful"):
         median_effect(first, second, np.zeros(N, dtype=bool), RESAMPLES)
-    with pytest.raises(ValueError, match="first has shape"):
+    with pytest.raises(ValueError, match="need one shape"):
         median_effect(first[:3], second, joint, RESAMPLES)
     with pytest.raises(ValueError, match="first holds NaN"):
         median_effect(first, second, np.ones(N, dtype=bool), RESAMPLES)

@@ -59,10 +59,10 @@ def test_each_kind_of_pair(first, second, both, same_source, kind, covering, alo
     """52 scenes of 60 succeed without an error."""
     none, *others = successes(52, first, second, both)
     same = {(0, 1)} if same_source else set()
-    result = cancelling(none, np.stack(others[:2]), {(0, 1): others[2]}, same)
+    result = cancelling(none, dict(enumerate(others[:2])), {(0, 1): others[2]}, same)
     pair = result.pairs[0, 1]
     assert (pair.kind, pair.covering) == (kind, covering)
-    assert tuple(single.kind for single in result.singles) == alone
+    assert tuple(single.kind for single in result.singles.values()) == alone
     shown = np.array([pair.none, pair.first, pair.second, pair.both])
     np.testing.assert_allclose(shown, np.array([52, first, second, both]) / 0.6)
     lost = 52 - min(first, second)
@@ -72,11 +72,11 @@ def test_each_kind_of_pair(first, second, both, same_source, kind, covering, alo
 
 def test_p_values_are_exact_mcnemars_by_holm():
     none, singles, pairs = drawn(1)
-    result = cancelling(none, singles, pairs, set())
+    result = cancelling(none, dict(enumerate(singles)), pairs, set())
     exact = [binomial(none, values) for values in singles]
-    assert [single.p_value for single in result.singles] == pytest.approx(exact)
+    assert [single.p_value for single in result.singles.values()] == pytest.approx(exact)
     by_holm = multipletests(exact, method="holm")[1]
-    assert [single.corrected_p for single in result.singles] == pytest.approx(by_holm)
+    assert [single.corrected_p for single in result.singles.values()] == pytest.approx(by_holm)
     hurt = [pair for pair in pairs if all(result.singles[e].kind == "hurts" for e in pair)]
     assert len(hurt) > 2
     worse = [min(pair, key=lambda error: singles[error].mean()) for pair in hurt]
@@ -102,10 +102,11 @@ def test_permuted_errors_permute_the_results(seeds):
     order = np.array([3, 0, 4, 1, 2])
     place = np.argsort(order).tolist()
     turned = {(place[b], place[a]): values for (a, b), values in pairs.items()}
-    result = cancelling(none, singles, pairs, same)
-    other = cancelling(none, singles[order], turned, {(place[b], place[a]) for a, b in same})
+    result = cancelling(none, dict(enumerate(singles)), pairs, same)
+    turned_same = {(place[b], place[a]) for a, b in same}
+    other = cancelling(none, dict(enumerate(singles[order])), turned, turned_same)
     assert {pair.kind for pair in result.pairs.values()} == {"cancel", "covers", None}
-    assert other.singles == tuple(result.singles[error] for error in order)
+    assert list(other.singles.values()) == [result.singles[error] for error in order]
     for (a, b), pair in result.pairs.items():
         covering = None if pair.covering is None else place[pair.covering]
         expected = pair._replace(
@@ -118,22 +119,23 @@ def test_permuted_errors_permute_the_results(seeds):
 
 def test_a_scene_counts_where_both_sides_have_an_outcome():
     none, singles, pairs = drawn(3)
-    whole = cancelling(none, singles, pairs, set())
+    whole = cancelling(none, dict(enumerate(singles)), pairs, set())
     blank = np.full((1, 7), np.nan)
 
     def longer(values):
         return np.concatenate([values, np.repeat(blank, len(values), axis=0)], axis=1)
 
     more = {key: longer(values[np.newaxis])[0] for key, values in pairs.items()}
-    assert cancelling(longer(none[np.newaxis])[0], longer(singles), more, set()) == whole
+    alone = dict(enumerate(longer(singles)))
+    assert cancelling(longer(none[np.newaxis])[0], alone, more, set()) == whole
     singles[0, :20] = np.nan
     pairs[1, 2][:5] = np.nan
-    result = cancelling(none, singles, pairs, set())
-    assert [single.scenes for single in result.singles] == [40, 60, 60, 60, 60]
+    result = cancelling(none, dict(enumerate(singles)), pairs, set())
+    assert [single.scenes for single in result.singles.values()] == [40, 60, 60, 60, 60]
     assert result.singles[0].none == pytest.approx(100.0 * none[20:].mean())
     assert [result.pairs[key].scenes for key in ((0, 1), (1, 2), (2, 3))] == [40, 55, 60]
     singles[1] = np.nan
-    assert cancelling(none, singles, pairs, set()).pairs[1, 2].kind is None
+    assert cancelling(none, dict(enumerate(singles)), pairs, set()).pairs[1, 2].kind is None
 
 
 @pytest.mark.parametrize(("errors", "fewest"), [(2, 7), (4, 9), (10, 12)])
@@ -141,7 +143,7 @@ def test_with_fewer_scenes_than_the_correction_needs_nothing_cancels(errors, few
     keys = list(combinations(range(errors), 2))
     assert fewest_scenes(errors, len(keys)) == fewest
     for scenes, kind in ((fewest - 1, None), (fewest, "cancel")):
-        succeed, fail = np.ones(scenes), np.zeros((errors, scenes))
+        succeed, fail = np.ones(scenes), dict.fromkeys(range(errors), np.zeros(scenes))
         result = cancelling(succeed, fail, dict.fromkeys(keys, succeed), set())
         assert {pair.kind for pair in result.pairs.values()} == {kind}
 

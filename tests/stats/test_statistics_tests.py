@@ -153,7 +153,7 @@ def test_of_scenes_that_differ_wholly_it_is_e_plus_m(first, second, seeds):
     scene = np.arange(N)[:, None] + np.zeros(seeds)
     variants = scene < first, (scene >= first) & (scene < first + second)
     alone = unconditional.p_value(first, second, N)
-    values, counts = found(*variants).scenes.kinds()
+    values, counts = found(*variants).scenes.kinds
     tango = score.p_value(values, counts, 1.0) if first != second else 1.0
     assert found(*variants).test.p_value == pytest.approx(max(alone, tango), rel=1e-9)
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from faultpath.loop import Module, Plant, Port, Progress, Query, interface_of
-from faultpath.system import Library, LoopSystem, SceneRef, System, Wiring
+from faultpath.system import Library, LoopSystem, SceneRef, System
 
 FACTS = """
 name: line
@@ -127,7 +127,7 @@ class Pilot(Module):
 class Loops(LoopSystem):
     name, control_dt_s = "loops", 0.1
     interface = interface_of(READ, (Pilot(""), Line()))
-    wirings = {"plain": Wiring("As it is.")}  # noqa: RUF012 - never changed
+    descriptions = {"plain": "As it is."}  # noqa: RUF012 - never changed
 
     def __init__(self, broken):
         self.broken = broken

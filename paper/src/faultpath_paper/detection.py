@@ -1,12 +1,21 @@
 """What the paper's rules detect in one contrast, uncorrected, and what they could detect."""
 
-from dataclasses import replace
+import math
+from dataclasses import dataclass, replace
 
 from faultpath.stats.contrast import Contrast
 from faultpath.stats.distributions import normal_quantile
 from faultpath.stats.estimate import Sign
 from faultpath.stats.power import MIN_SCENES, detectable
 from faultpath.stats.resamples import ROUNDING
+
+
+@dataclass(frozen=True, eq=False)
+class Difference(Contrast):
+    """A contrast that a statement is about."""
+
+    telling: float = math.inf
+    """Size that has to be detectable before "not significant" says anything."""
 
 
 def resampled(contrast: Contrast) -> Contrast:

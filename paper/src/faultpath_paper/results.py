@@ -1,9 +1,10 @@
 """Outcomes and measurements of the studies' runs, as tables, figures and claims read them."""
 
+import math
 from collections.abc import Callable, Collection
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import lru_cache
-from typing import Concatenate, ParamSpec
+from typing import Any, Concatenate, ParamSpec
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from faultpath.stats.estimate import Estimate
 from faultpath.stats.resamples import Resamples
 from faultpath.system import Outcome, Status
 from faultpath_paper.cells import Cell
-from faultpath_paper.detection import enough
+from faultpath_paper.detection import Difference, enough
 from faultpath_paper.evidence.table import EvidenceTable, Measured, Measurement
 
 
@@ -129,11 +130,12 @@ def quantity(compute: Callable[Concatenate[Results, P], Contrast]) -> Callable[P
     return named
 
 
-def decisive(contrast: Contrast, notable: float | None = None) -> Contrast:
+def decisive(contrast: Contrast, telling: float = math.inf) -> Difference:
     """Return a contrast without its interval where too few scenes give it.
 
-    `notable` as in `Contrast`.
+    `telling` as in `Difference`.
     """
-    if enough(contrast):
-        return replace(contrast, notable=notable)
-    return replace(contrast, notable=notable, draws=np.empty(0), scenes=None)
+    shown = contrast if enough(contrast) else replace(contrast, draws=np.empty(0), scenes=None)
+    values: dict[str, Any] = {field.name: getattr(shown, field.name) for field in fields(shown)}
+    values["telling"] = telling
+    return Difference(**values)

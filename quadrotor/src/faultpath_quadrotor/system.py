@@ -13,7 +13,7 @@ from faultpath.faults import FaultPreset
 from faultpath.interface import Interface
 from faultpath.loop import Deliverer, Loop, Module, Part, Plant
 from faultpath.plugin.system import UserError
-from faultpath.system import VEHICLE, FloorPlan, Library, LoopSystem, Outcome, SceneRef, Wiring
+from faultpath.system import VEHICLE, FloorPlan, Library, LoopSystem, Outcome, SceneRef
 from faultpath_quadrotor import native
 from faultpath_quadrotor.choices import (
     ESTIMATORS,
@@ -134,8 +134,12 @@ class Quadrotor(LoopSystem):
 
     @property
     @override
-    def wirings(self) -> Mapping[str, Wiring]:
-        return {name: parts.wiring(self.options) for name, parts in self.variant_parts.items()}
+    def descriptions(self) -> Mapping[str, str]:
+        return {name: parts.description for name, parts in self.variant_parts.items()}
+
+    @override
+    def bindings(self, variant: str) -> Mapping[str, str]:
+        return self.variant_parts[variant].bindings(self.options)
 
     @override
     def plant(self) -> Plant:

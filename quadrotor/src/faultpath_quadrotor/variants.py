@@ -13,7 +13,6 @@ from dataclasses import dataclass, field, replace
 import torch
 
 from faultpath.loop import Module
-from faultpath.system import Wiring
 from faultpath_quadrotor.choices import (
     ESTIMATORS,
     INERTIAL,
@@ -44,10 +43,7 @@ _FIXED = {
 
 @dataclass(frozen=True)
 class VariantParts:
-    """Names of the parts that a variant flies with, and how each is loaded.
-
-    The engine's `Wiring` says what is shown of it, and its `Variant` adds the readers.
-    """
+    """Names of the parts that a variant flies with, and how each is loaded."""
 
     name: str
     predictor: str
@@ -96,25 +92,29 @@ class VariantParts:
             return estimator(self.estimator, options.fixes, options.place)
         return self.user_parts[self.estimator].load(seed, options.place)
 
-    def wiring(self, options: QuadrotorOptions) -> Wiring:
-        """Return the variant as audits show it: in words, with the sources that it takes."""
+    def bindings(self, options: QuadrotorOptions) -> Mapping[str, str]:
+        """Return the sources of clearance and wind."""
         estimated = options.clearance is not ClearanceName.TRUE
-        bindings = {
+        wind, _ = _FIXED.get(self.wind or ZERO_WIND, ("reconstructed_wind", ""))
+        return {
             "clearance": "estimated_clearance" if estimated else "true_clearance",
-            "wind": "zero_wind",
+            "wind": wind,
         }
+
+    @property
+    def description(self) -> str:
+        """The variant in words, as audits show it."""
         own = {name: part.description for name, part in self.user_parts.items()}
-        known = {**PREDICTORS, **RECONSTRUCTIONS, **ESTIMATORS, **own}
+        fixed = {name: words for name, (_, words) in _FIXED.items()}
+        known = {**PREDICTORS, **RECONSTRUCTIONS, **ESTIMATORS, **own, **fixed}
         words = f"Prediction: {known[self.predictor]}"
         if self.wind is not None:
-            reconstructed = ("reconstructed_wind", known.get(self.wind, ""))
-            bindings["wind"], source = _FIXED.get(self.wind, reconstructed)
-            words = f"{words}. Wind: {source}"
+            words = f"{words}. Wind: {known[self.wind]}"
         if self.planner is not None:
             words = f"{words}. Planning: {known[self.planner]}"
         if self.estimator is not None:
             words = f"{words}. Estimating: {known[self.estimator]}"
-        return Wiring(f"{words}.", bindings)
+        return f"{words}."
 
 
 def variants(

@@ -4,18 +4,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import PurePath
 
-from faultpath.analyses.analysis import Analysis, Round, Rounds
-from faultpath.analyses.decide import decide, primary_condition
-from faultpath.analyses.facts import ComparisonFacts, SceneOrder, facts_of, question_of
-from faultpath.analyses.model import AuditResult, Condition, FaultedTap, title_of
-from faultpath.analyses.planning import (
+from faultpath.analyses.analysis import (
     ORDER_SEED,
+    Analysis,
+    Round,
+    Rounds,
     faults_by_condition,
     rows_of,
     scenes_of,
     two_variants,
 )
-from faultpath.analyses.stopping import stops
+from faultpath.analyses.decide import decide, primary_condition, stops
+from faultpath.analyses.facts import ComparisonFacts, SceneOrder, facts_of, question_of
+from faultpath.analyses.model import AuditResult, Condition, FaultedTap, title_of
 from faultpath.core.errors import UserError
 from faultpath.core.text import counted, unknown
 from faultpath.faults import Fault
@@ -47,19 +48,21 @@ class AuditAnalysis(Analysis[None]):
 
     def conclude(self, trials: Trials, deliveries: Deliveries, items: None = None) -> AuditResult:
         """Return the result of an audit; raises as `faultpath.analyses.decide.decide`."""
-        question = self.question
+
+        def faulted(variant: str, condition: Condition) -> tuple[FaultedTap, ...]:
+            return faulted_taps(deliveries.at(variant, condition.name))
+
+        repair, baseline = self.question.repair, self.question.baseline
         conditions = [
             condition.model_copy(
                 update={
-                    "faulted": faulted_taps(deliveries.at(question.repair, condition.name)),
-                    "baseline_faulted": faulted_taps(
-                        deliveries.at(question.baseline, condition.name)
-                    ),
+                    "faulted": faulted(repair, condition),
+                    "baseline_faulted": faulted(baseline, condition),
                 }
             )
             for condition in self.conditions
         ]
-        return decide(question, self.facts, conditions, trials, deliveries.findings)
+        return decide(self.question, self.facts, conditions, trials, deliveries.findings)
 
     def stops(self, trials: Trials) -> bool:
         """Return whether a sequential audit ends with these trials."""
@@ -96,38 +99,36 @@ def audit_analysis(
     """
     variants = two_variants(system, request)
     sequential = request.stop_when is not None
-    chosen = scenes_of(library, request.scenes, in_order=not sequential)
+    scenes = scenes_of(library, request.scenes, in_order=not sequential)
     faults = system.fault(request.fault)
     by_condition = faults_by_condition(faults, variants)
-    conditions = [
+    conditions = tuple(
         _condition(name, by_variant[request.repair], by_variant[request.baseline])
         for name, by_variant in by_condition.items()
-    ]
-    # Where the fault cannot reach a variant, that is the treatment under correct inputs: it runs
-    # once.
-    rows = [
-        row
-        for condition, by_variant in by_condition.items()
-        for row in rows_of(condition, by_variant, request.seeds)
-    ]
+    )
     _check(system, request)
     plan = Plan(
         name=f"{spec.name}-{request.repair}-vs-{request.baseline}",
         system=spec,
         library=library.name,
-        scenes=chosen,
-        rows=tuple(rows),
+        scenes=scenes,
+        # A variant that the fault cannot reach has the treatment under correct inputs, run once.
+        rows=tuple(
+            row
+            for condition, by_variant in by_condition.items()
+            for row in rows_of(condition, by_variant, request.seeds)
+        ),
         scenes_per_analysis=min(_BATCH, system.block_size or _BATCH) if sequential else 0,
     )
     order = SceneOrder(
-        scenes=chosen,
+        scenes=scenes,
         seed=ORDER_SEED,
         per_analysis=plan.scenes_per_analysis,
         trials=len(plan.treatments()),
     )
     facts = ComparisonFacts(
         **facts_of(system, spec, library),
-        n_scenes=len(chosen),
+        n_scenes=len(scenes),
         seeds=request.seeds,
         primary=primary_condition(request.primary or "", conditions),
         faults=faults,
@@ -140,11 +141,10 @@ def audit_analysis(
         small = "" if request.margin_pp is None else f"-within-{request.margin_pp:g}"
         named.append(f"until-{request.stop_when}{small}")
     question = question_of(request, AuditQuestion, spec)
-    return AuditAnalysis(question, system, tuple(named), facts, tuple(conditions), plan)
+    return AuditAnalysis(question, system, tuple(named), facts, conditions, plan)
 
 
 def _condition(name: str, repair: Sequence[Fault], baseline: Sequence[Fault]) -> Condition:
-    """Return a condition of the fault, with what it reaches in each variant."""
     readers, baseline_readers = (
         tuple(dict.fromkeys(reader for fault in faults for reader in fault.readers))
         for faults in (repair, baseline)

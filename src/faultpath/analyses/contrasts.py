@@ -1,16 +1,78 @@
-"""The contrasts of an audit: effects, changes, and their shares of the error rate."""
+"""Success of two variants under each condition, pair by pair, and the contrasts that follow."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
-from faultpath.analyses.compared import Outcomes, paired_scenes
-from faultpath.analyses.model import CORRECT, SHARED
+from faultpath.analyses.model import CORRECT, SHARED, where
+from faultpath.core.errors import UserError
+from faultpath.run.findings import Unpaired
+from faultpath.run.pairing import Group, Pairs, pair
+from faultpath.run.trials import Bools, Trials
 from faultpath.stats.contrast import Contrast, change
 from faultpath.stats.decisions import with_test
 from faultpath.stats.effects import success_effect
 from faultpath.stats.inputs import Floats
+
+Outcomes: TypeAlias = tuple[Floats, Floats]
+"""Success of the repair and of the baseline, each `[scenes, seeds]`: 1 or 0, and not a number where
+a trial has no outcome."""
+
+
+@dataclass(frozen=True)
+class PairedTrials:
+    """Trials that are compared, condition by condition, and conditions that are not."""
+
+    pairs: Mapping[str, Pairs]
+    """Under each condition of which a pair has both outcomes."""
+    success: Mapping[str, Outcomes]
+    """Under each of these, in every scene, by the seeds that count."""
+    missing: tuple[str, ...]
+    """Conditions of which no pair has."""
+    unpaired: tuple[Unpaired, ...]
+    """Pairs that met different conditions."""
+
+
+def compared(repair: str, baseline: str, conditions: Iterable[str], trials: Trials) -> PairedTrials:
+    """Return the trials of two variants that are compared; `UserError` when no pair is left.
+
+    Each condition keeps its own scenes and seeds: what failed elsewhere costs it nothing. Where all
+    seeds gave the same in everything, one counts.
+    """
+    pairs = {
+        condition: pair(trials, Group(repair, condition), Group(baseline, condition))
+        for condition in conditions
+    }
+    success = {condition: paired.success for condition, paired in pairs.items()}
+    left = [condition for condition, ends in success.items() if paired_scenes(*ends).any()]
+    if not left:
+        row, error = next(iter(trials.errors.items()))
+        variant, condition, _, scene = trials.places[row]
+        raise UserError(
+            "no scene is left to compare, because in each of them a trial failed, such as that of "
+            f"{trials.variants[variant]} in {trials.scenes[scene].id} "
+            f"{where(trials.conditions[condition])} ({error}): fix what made it fail, or choose "
+            "other scenes."
+        )
+    columns = np.concatenate([part for condition in left for part in success[condition]])
+    alike = np.array_equal(columns, np.repeat(columns[:, :1], columns.shape[1], 1), equal_nan=True)
+    seeds = slice(1) if alike else slice(None)
+    return PairedTrials(
+        pairs={condition: pairs[condition] for condition in left},
+        success={
+            condition: (success[condition][0][:, seeds], success[condition][1][:, seeds])
+            for condition in left
+        },
+        missing=tuple(condition for condition in pairs if condition not in left),
+        unpaired=tuple(unlike for paired in pairs.values() for unlike in paired.unpaired),
+    )
+
+
+def paired_scenes(repair: Floats, baseline: Floats) -> Bools:
+    """Return `[scenes]` whether any seed has both outcomes."""
+    return np.asarray(~np.isnan(repair - baseline).all(axis=1), dtype=np.bool_)
 
 
 @dataclass(frozen=True)
@@ -58,6 +120,23 @@ class Design:
         return contrasts
 
 
+def effect_name(condition: str) -> str:
+    """Name the effect under a condition among the contrasts of a family."""
+    return f"effect/{condition}"
+
+
+def change_name(condition: str) -> str:
+    """Name the change from an isolated condition to the shared one, likewise."""
+    return f"change/{condition}"
+
+
+def isolated(tested: Collection[str]) -> list[str]:
+    """Return the conditions of a fault at one module, which the shared one is compared with."""
+    if SHARED not in tested:
+        return []
+    return [condition for condition in tested if condition not in (CORRECT, SHARED)]
+
+
 def default_primary(primary: str, conditions: Collection[str]) -> str:
     """Return the primary condition: as named, else the shared one, else the isolated."""
     alone = [name for name in conditions if name not in (CORRECT, SHARED)]
@@ -74,20 +153,3 @@ def alpha_shares(conditions: Collection[str], primary: str) -> dict[str, float]:
     others = [name for name in named if name != effect_name(primary)]
     shares = dict.fromkeys(others, 0.5 / max(1, len(others)))
     return {effect_name(primary): 0.5 if others else 1.0, **shares}
-
-
-def effect_name(condition: str) -> str:
-    """Name the effect under a condition among the contrasts of a family."""
-    return f"effect/{condition}"
-
-
-def change_name(condition: str) -> str:
-    """Name the change from an isolated condition to the shared one, likewise."""
-    return f"change/{condition}"
-
-
-def isolated(tested: Collection[str]) -> list[str]:
-    """Return the conditions of a fault at one module, which the shared one is compared with."""
-    if SHARED not in tested:
-        return []
-    return [condition for condition in tested if condition not in (CORRECT, SHARED)]

@@ -1,4 +1,4 @@
-"""Descriptive numbers of a condition, which decide nothing: how trials ended, times, metrics."""
+"""Descriptive numbers of a condition, without tests: how trials ended, times, metrics."""
 
 from collections.abc import Sequence
 from functools import lru_cache
@@ -93,7 +93,7 @@ def secondary(
         full = np.asarray(np.isfinite(both[0] + both[1]).all(axis=1))
         if not (n_scenes := int(full.sum())):
             continue
-        # Of a scene in which a trial has no value nothing is told.
+        # A scene in which a trial has no value is left out.
         new, old = (values[full] for values in both)
         drawn = _resamples(library, n_scenes)
         difference = mean_effect(new, old, drawn, metric.unit)

@@ -20,7 +20,7 @@ class Missing(Result):
     """Pairs without both outcomes, and the range of an effect that they leave open."""
 
     void: int = 0
-    """Pairs, seed by seed, that count for nothing: a trial failed, or the two are no pair."""
+    """Missing pairs, seed by seed: a trial failed, or the two are no pair."""
     repair: int = 0
     """Failed trials of the repair under this condition."""
     baseline: int = 0
@@ -28,14 +28,14 @@ class Missing(Result):
     """The difference over all scenes where all trials that failed go against the repair; `None`
     where none failed under any condition."""
     favour_pp: float | None = None
-    """Where they go for it."""
+    """The same where they go for it."""
     uneven: bool = False
     """Whether one version failed more often than chance explains: no headline rests on it."""
     unsettled: bool = False
-    """Whether the trials that ran decide for a version, and those that failed could undo that."""
+    """Whether it would be significant, if failed trials could not undo that."""
     reruns: tuple[int, int] | None = None
-    """Where they could: how many failed trials of the repair and of the baseline have to run to
-    settle it, if they come out as the others did."""
+    """If so: how many failed trials of the repair and of the baseline have to run to make it
+    significant, if they come out as the others did."""
 
 
 class AtThreshold(Result):
@@ -49,7 +49,7 @@ class AtThreshold(Result):
 
 
 class Difference(Result):
-    """A difference in success with its interval, its test and what the family decides of it."""
+    """A difference in success with its interval and its test, corrected over the family."""
 
     value: float
     """Percentage points."""
@@ -65,12 +65,12 @@ class Difference(Result):
     corrected_p: float | None
     """Over the family, after Holm or by the shares of a sequential audit; `None` outside of it."""
     sign: Sign
-    """Decision of the family of all contrasts: 1 for the repair, -1 for the baseline, 0 for
-    neither."""
+    """Side significantly ahead, corrected over the family: 1 for the repair, -1 for the baseline, 0
+    for neither."""
 
     @property
     def significant(self) -> bool:
-        """Whether the family decides for one of the versions."""
+        """Whether one of the versions is significantly ahead."""
         return self.sign != 0
 
     @property
@@ -94,8 +94,8 @@ class Effect(Difference):
     missing: Missing | None = None
     """Where pairs are missing; with bounds where trials failed under any condition."""
     least_pp: float | None
-    """True difference that the deciding rule finds with 80 % power, if it comes on top of the
-    discordance that was seen."""
+    """True difference that is significant with 80 % power, if it comes on top of the discordance
+    that was seen."""
 
     @property
     def acted(self) -> bool:
@@ -128,7 +128,7 @@ class Effect(Difference):
 
     @property
     def void(self) -> int:
-        """Pairs of trials, seed by seed, that count for nothing."""
+        """Missing pairs, seed by seed."""
         return self.missing.void if self.missing else 0
 
     @property
@@ -143,7 +143,7 @@ class Effect(Difference):
 
 
 class Change(Difference):
-    """How the effect changes from a fault at one module to the shared one."""
+    """Change of the effect from a fault at one module to the shared one."""
 
     isolated: str
     unsettled: bool = False
@@ -154,7 +154,7 @@ class Change(Difference):
 
 
 class Secondary(Result):
-    """Time and metrics under one condition, repair minus baseline; nothing is decided from them."""
+    """Time and metrics under one condition, repair minus baseline, without tests."""
 
     condition: str
     time_s: Estimate | None = None

@@ -1,4 +1,4 @@
-"""What building a system and its library told: stands in a result beside the question."""
+"""The question of a result, and the facts of system and library beside it."""
 
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, TypeAlias, TypeVar
@@ -29,7 +29,7 @@ Question: TypeAlias = Annotated[
     Annotated[AuditQuestion, Tag("audit")] | Annotated[JudgeQuestion, Tag("judge")],
     Discriminator(_verb),
 ]
-"""What is asked of two versions, as a result keeps it."""
+"""Question about two versions, as a result keeps it."""
 
 
 def question_of(call: Request, model: type[_Question], spec: SystemSpec) -> _Question:
@@ -40,7 +40,7 @@ def question_of(call: Request, model: type[_Question], spec: SystemSpec) -> _Que
 
 
 class Facts(Result):
-    """What a system and its library are."""
+    """Facts that building a system and its library gave."""
 
     system: str
     library: str
@@ -65,18 +65,18 @@ class SceneOrder(Result):
     scenes: tuple[str, ...]
     """In the order in which they are run, drawn before the first trial."""
     seed: int
-    """Of the draw, with the hash of the library."""
+    """Seed of the draw, with the hash of the library."""
     per_analysis: int
     """Scenes from one analysis of the results to the next."""
     trials: int
-    """That a scene takes: distinct treatments."""
+    """Trials of a scene: its distinct treatments."""
 
 
 class ComparisonFacts(Facts):
-    """What a system and its library, or other tools' results, told of a comparison."""
+    """Facts of a comparison, from a system and its library or from other tools' results."""
 
     n_scenes: int
-    """Of a sequential audit the most that it takes."""
+    """Number of scenes; in a sequential audit the largest possible."""
     seeds: tuple[int, ...]
     primary: str = ""
     """Condition of the primary contrast, which leads the headline; empty for the default."""
@@ -92,7 +92,7 @@ class ComparisonFacts(Facts):
     unit: Literal["scene", "task"] = "scene"
     """Unit that counts as one scene: a scene, or a task with all of its scenes."""
     order: SceneOrder | None = None
-    """Of a sequential audit."""
+    """Order of the scenes of a sequential audit."""
 
     @property
     def judged(self) -> bool:
@@ -106,9 +106,9 @@ class ComparisonFacts(Facts):
 
 
 class EarlierAnalysis(Result):
-    """Question of an earlier conclusion of the audit; a result cannot allow for that."""
+    """An earlier analysis of the same trials; a result cannot allow for it."""
 
     scenes: int | None
-    """`None` of a sequential audit, which allows for its number."""
+    """`None` for a sequential audit, which allows for its number."""
     primary: str
     generalise: Generalise = "scenes"

@@ -1,4 +1,4 @@
-"""The contrasts of an audit, tested together."""
+"""The contrasts of an audit, tested together; several sizes of a fault as one family."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -6,30 +6,27 @@ from functools import partial
 
 import numpy as np
 
-from faultpath.analyses.compared import Outcomes, PairedTrials, compared
 from faultpath.analyses.contrasts import (
     Design,
+    Outcomes,
+    PairedTrials,
     alpha_shares,
     change_name,
+    compared,
     default_primary,
     effect_name,
     isolated,
 )
 from faultpath.analyses.facts import ComparisonFacts, Question
-from faultpath.analyses.missing import (
-    Correct,
-    MissingOutcomes,
-    failed_unevenly,
-    missing_outcomes,
-)
-from faultpath.analyses.model import SHARED, Condition
+from faultpath.analyses.missing import Correct, MissingOutcomes, failed_unevenly, missing_outcomes
+from faultpath.analyses.model import SHARED, AuditResult, Condition
 from faultpath.core.errors import UserError
 from faultpath.run.question import FEWEST_TRAININGS
 from faultpath.run.trials import Trials
 from faultpath.stats import betting
 from faultpath.stats.contrast import Contrast, ordered_sum
-from faultpath.stats.decisions import Turn, decide_family, turn
-from faultpath.stats.estimate import ALPHA
+from faultpath.stats.decisions import Turn, decide_family, holm, turn
+from faultpath.stats.estimate import ALPHA, Sign
 from faultpath.stats.power import fewest_scenes
 
 
@@ -42,9 +39,11 @@ class TestedContrasts:
     changes: Mapping[str, Contrast]
     """Shared minus isolated, by the isolated condition."""
     turns: Mapping[str, Turn]
-    """What sharing does to the effect, by the isolated condition."""
+    """Effect of sharing the fault, by the isolated condition."""
     hypotheses: int
+    """Number of contrasts that share the error rate."""
     scenes_needed: int
+    """With fewer, nothing can be significant."""
     design: Design
     missing: MissingOutcomes
     uneven: Collection[str]
@@ -52,16 +51,12 @@ class TestedContrasts:
 
     def without_claims(self) -> "TestedContrasts":
         """Return the contrasts of trials that support no result: none is significant."""
-
-        def not_significant(contrasts: Mapping[str, Contrast]) -> dict[str, Contrast]:
-            return {name: _not_significant(contrast) for name, contrast in contrasts.items()}
-
         return replace(
             self,
-            effects=not_significant(self.effects),
-            changes=not_significant(self.changes),
+            effects={name: _not_significant(effect) for name, effect in self.effects.items()},
+            changes={name: _not_significant(change) for name, change in self.changes.items()},
             turns=dict.fromkeys(self.turns, "none"),
-            missing=replace(self.missing, unsettled=(), reruns={}),
+            missing=replace(self.missing, inconclusive=(), reruns={}),
         )
 
 
@@ -74,7 +69,7 @@ def family_of(
 ) -> tuple[PairedTrials, TestedContrasts]:
     """Return the paired trials of an audit, and their contrasts.
 
-    `UserError` when no pair is left, and where newly trained models are asked for and too few
+    `UserError` when no pair is left, and where the question is of newly trained models and too few
     trainings gave different outcomes.
     """
     names = [condition.name for condition in conditions]
@@ -111,15 +106,15 @@ def decide_conditions(
     """Return every contrast of an audit with its corrected test, from successes `[scenes, seeds]`
     by condition, not a number where a trial has no outcome.
 
-    This is the rule of `faultpath audit`, without words and without secondary outcomes, and what
-    simulations of its error rates call. The family holds the effect under every condition and every
-    change from an isolated condition to `SHARED`, each over the scenes that have its trials. Holm's
-    procedure, weighted with `alpha_shares` for the `primary` condition, runs over all of them at
-    `alpha`. Conditions in `untested` (the fault never acted there) take no part. `models` speaks of
-    newly trained models as well. `shares` of `alpha`, by the names of `alpha_shares`, say that the
-    audit was sequential: what is significant then is so at whatever scene it stopped, each contrast
-    at its own share. Where trials are missing, what is significant has to be so too with all of
-    them against it.
+    This is the rule of `faultpath audit`, without words and secondary outcomes; simulations of its
+    error rates call it. The family holds the effect under every condition and every change from an
+    isolated condition to `SHARED`, each over the scenes that have its trials. Holm's procedure,
+    weighted with `alpha_shares` for the `primary` condition, corrects all of them at `alpha`.
+    Conditions in `untested` (the fault never acted there) take no part. With `models` contrasts
+    hold for newly trained models as well. `shares` of `alpha`, by the names of `alpha_shares`, are
+    those of a sequential audit: each contrast is tested at its own share, at whatever scene the
+    audit stopped. Where trials are missing, a significant contrast has to be so with all of them
+    against it too.
     """
     success = {
         condition: (np.asarray(one, np.float64), np.asarray(two, np.float64))
@@ -127,16 +122,19 @@ def decide_conditions(
     }
     design = Design(models, sequential=shares is not None)
     tested = [condition for condition in success if condition not in untested]
-    contrasts = design.contrasts(tested, success)
 
+    # Every effect and change with its test, then corrected together.
+    contrasts = design.contrasts(tested, success)
     parts = alpha_shares(tested, default_primary(primary, success))
     weights = {name: parts[name] for name in contrasts}
     correct: Correct = partial(decide_family, alpha=alpha, shares=shares, weights=weights)
     corrected = correct(contrasts)
 
+    # A contrast that missing trials could undo is not significant.
     missing = missing_outcomes(design, tested, success, corrected, correct)
-    corrected |= {name: _not_significant(corrected[name]) for name in missing.unsettled}
+    corrected |= {name: _not_significant(corrected[name]) for name in missing.inconclusive}
 
+    # By condition again; without correction where the fault never acted.
     effects = {
         condition: corrected.get(effect_name(condition)) or design.effect(*pair)
         for condition, pair in success.items()
@@ -169,7 +167,7 @@ def decide_conditions(
 def _turn(
     condition: str, effects: Mapping[str, Contrast], moved: Contrast, uneven: Collection[str]
 ) -> Turn:
-    """Return what sharing does to the effect under an isolated condition; no reversal rests on a
+    """Return the effect of sharing the fault, from an isolated condition; no reversal rests on a
     condition where the trials of one version failed more often."""
     if condition in uneven or SHARED in uneven:
         return "interaction" if moved.sign else "none"
@@ -178,3 +176,46 @@ def _turn(
 
 def _not_significant(contrast: Contrast) -> Contrast:
     return replace(contrast, test=contrast.test and contrast.test._replace(sign=0))
+
+
+def tested_contrasts(result: AuditResult) -> dict[str, tuple[float, float]]:
+    """Return p and weight of every contrast that was tested, by its name."""
+    tested = [effect for effect in result.effects if effect.corrected_p is not None]
+    p_values = {effect_name(effect.condition): effect.p_value for effect in tested}
+    p_values |= {change_name(change.isolated): change.p_value for change in result.changes}
+    parts = alpha_shares([effect.condition for effect in tested], result.facts.primary)
+    return {name: (p, parts[name]) for name, p in p_values.items()}
+
+
+def decide_sizes(
+    results: Sequence[AuditResult], once: Collection[str] = ()
+) -> list[dict[str, tuple[Sign, float]]]:
+    """Return for each size of a fault, by condition, the side that is significantly ahead over all
+    sizes, and the adjusted p.
+
+    Holm's procedure over every contrast of every size, weighted as each audit by itself: whatever
+    is significant then holds with an error of at most 5 % for all sizes together, and is so in its
+    own audit too. Contrasts named in `once` are the same trials at every size, and one.
+    """
+
+    def key(size: int, name: str) -> str:
+        return name if name in once else f"{size}/{name}"
+
+    tested = {
+        key(size, name): contrast
+        for size, result in enumerate(results)
+        for name, contrast in tested_contrasts(result).items()
+    }
+    adjusted = holm(
+        {name: p for name, (p, _) in tested.items()},
+        {name: weight for name, (_, weight) in tested.items()},
+    )
+    families: list[dict[str, tuple[Sign, float]]] = []
+    for size, result in enumerate(results):
+        family: dict[str, tuple[Sign, float]] = {}
+        for effect in result.effects:
+            if effect.corrected_p is not None:
+                p = adjusted[key(size, effect_name(effect.condition))]
+                family[effect.condition] = effect.sign if p <= ALPHA else 0, p
+        families.append(family)
+    return families

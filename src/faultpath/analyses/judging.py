@@ -1,28 +1,42 @@
-"""From trials that other tools ran to what an audit is decided from: facts, conditions, trials."""
+"""Trials that other tools ran, as facts, conditions and trials of an audit."""
 
 import hashlib
 import json
 import re
+from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 
 from faultpath.analyses.decide import primary_condition
 from faultpath.analyses.facts import ComparisonFacts
-from faultpath.analyses.judging_table import Address, Key, table_of, units_of
 from faultpath.analyses.model import AS_RUN, CORRECT, SHARED, Condition, title_of, where
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
 from faultpath.run.deliveries import unproven
 from faultpath.run.findings import ExtraTrials, Finding, MissingTrials, NoneFailed, SeveralTasks
+from faultpath.run.question import FEWEST_TRAININGS
 from faultpath.run.received.question import JudgeQuestion
 from faultpath.run.received.results import NO_OUTCOME, Received
 from faultpath.run.store.tables import FIXED
-from faultpath.run.trials import Trials
-from faultpath.system.outcome import Metric, Status
+from faultpath.run.trials import Trial, Trials
+from faultpath.system.outcome import Metric, Outcome, Status, failed_outcome
 
-_ONE = "one module"
-"""Name of a condition that results call isolated without naming a module."""
-_FIRST = {CORRECT: 0, SHARED: 2}
+Key = tuple[str, str]
+"""A trial within its variant and condition: its scene or task, and its label there."""
+Address = tuple[str, str, Key]
+"""Variant, condition and key."""
+
+
+@dataclass(frozen=True)
+class Units:
+    """Scenes or tasks, each with the labels of its trials."""
+
+    labels: Mapping[str, Collection[str]]
+    """All of them."""
+    compared: Mapping[str, Sequence[str]]
+    """Those that are compared, at most as many as seeds, in order."""
+    seeds: tuple[int, ...]
 
 
 @dataclass(frozen=True)
@@ -39,10 +53,8 @@ class PairedResults:
 def pair_results(rows: Sequence[Received], request: JudgeQuestion) -> PairedResults:
     """Pair the trials of two variants by what names them: task, scene, seed and condition.
 
-    What one variant has and the other lacks is a failed trial, so that its pair is void, and is
-    named.
-    Raises `UserError` for variants and conditions that are not there, a trial that is there twice,
-    variants without a trial in common, and hashes that only some trials have.
+    A trial that one variant has and the other lacks counts as failed there, and is named.
+    Raises `UserError` where rows do not fit together, or not to the question.
     """
     if request.baseline == request.repair:
         raise UserError(f"baseline and repair are both '{request.repair}': name two versions.")
@@ -54,17 +66,17 @@ def pair_results(rows: Sequence[Received], request: JudgeQuestion) -> PairedResu
     if request.cluster == "task" and not all(row.task for row in rows):
         raise UserError("not every trial names its task: give --column task=NAME.")
     received = _by_address(rows, names, request)
-    ordered = sorted(set(names.values()), key=lambda name: (_FIRST.get(name, 1), name))
+    ordered = sorted(set(names.values()), key=lambda name: (name == SHARED, name != CORRECT, name))
     _check_paired(received, ordered, request)
 
-    units = units_of(received, request)
+    units = _units(received, request)
     hashed = _hashed(rows)
-    trials, missing = table_of(received, ordered, units, request, hashed)
-    keys = {unit: sorted(members) for unit, members in units.labels.items()}
+    trials, missing = _table(received, ordered, units, request, hashed)
     conditions = tuple(
         Condition(name=name, title=title_of(name), readers=(), baseline_readers=())
         for name in ordered
     )
+    keys = {unit: sorted(members) for unit, members in units.labels.items()}
     crashed = any(row.status is Status.CRASH for row in rows)
     facts = ComparisonFacts(
         system="results of other tools",
@@ -81,14 +93,13 @@ def pair_results(rows: Sequence[Received], request: JudgeQuestion) -> PairedResu
     )
     longer = [unit for unit, members in units.labels.items() if len(members) > len(units.seeds)]
     tasks = len({row.task for row in rows})
-    findings = _findings(trials, missing, longer, tasks, hashed, request)
-    return PairedResults(
-        request.model_copy(update={"folder": None}), facts, conditions, trials, tuple(findings)
-    )
+    findings = tuple(_findings(trials, missing, longer, tasks, hashed, request))
+    question = request.model_copy(update={"folder": None})
+    return PairedResults(question, facts, conditions, trials, findings)
 
 
 def _condition_names(conditions: Collection[str], question: JudgeQuestion) -> dict[str, str]:
-    """Return what each condition is called here; `UserError` without one that is nominal."""
+    """Return our name of each condition; `UserError` without one that is nominal."""
     for name in filter(None, (question.nominal, question.shared)):
         if name not in conditions:
             raise UserError(
@@ -102,16 +113,15 @@ def _condition_names(conditions: Collection[str], question: JudgeQuestion) -> di
         raise UserError(
             f"'{question.shared}' is the nominal condition: name another with --shared."
         )
-    names: dict[str, str] = {}
-    for condition in sorted(conditions):
+
+    def ours(condition: str) -> str:
         if condition in nominal:
-            names[condition] = CORRECT
-        elif condition in shared:
-            names[condition] = SHARED
-        else:
-            names[condition] = (
-                _ONE if condition == "isolated" else condition.removeprefix("isolated:")
-            )
+            return CORRECT
+        if condition in shared:
+            return SHARED
+        return "one module" if condition == "isolated" else condition.removeprefix("isolated:")
+
+    names = {condition: ours(condition) for condition in sorted(conditions)}
     if CORRECT not in names.values():
         raise UserError(
             f"no condition is nominal ({listed(conditions)}): say with --nominal which one is "
@@ -157,26 +167,24 @@ def _by_address(
 def _check_paired(
     trials: Collection[Address], conditions: Sequence[str], question: JudgeQuestion
 ) -> None:
-    """Raise `UserError` for a condition on which no trial of one variant has its pair in the
-    other."""
+    """Raise `UserError` for a condition without a trial that both variants have."""
     for condition in conditions:
-        ones, twos = (
+        ones, twos = keys = [
             sorted(key for variant, at, key in trials if (variant, at) == (name, condition))
             for name in (question.baseline, question.repair)
-        )
-        for name, keys in ((question.baseline, ones), (question.repair, twos)):
-            if not keys:
+        ]
+        for name, known in zip((question.baseline, question.repair), keys, strict=True):
+            if not known:
                 raise UserError(
                     f"'{name}' has no trial {where(condition)}: give both versions under each "
                     "condition."
                 )
         if not set(ones) & set(twos):
-            first, second = (", seed ".join(filter(None, keys[0])) for keys in (ones, twos))
+            first, second = (", seed ".join(filter(None, known[0])) for known in keys)
             raise UserError(
                 f"no trial of '{question.baseline}' has its pair in '{question.repair}' "
                 f"{where(condition)} (the first are scene {first} and scene {second}): name the "
-                "columns "
-                "that say what belongs together, as in --column scene=NAME."
+                "columns that say what belongs together, as in --column scene=NAME."
             )
 
 
@@ -190,6 +198,78 @@ def _hashed(rows: Sequence[Received]) -> bool:
             "the column, or take it out."
         )
     return bool(ended) and not bare
+
+
+def _units(trials: Iterable[Address], request: JudgeQuestion) -> Units:
+    """Return the trials compared of each scene or task; `UserError` where the question is of newly
+    trained models and trials have no seeds."""
+    labels: dict[str, dict[str, None]] = {}
+    for _, _, (unit, label) in trials:
+        labels.setdefault(unit, {})[label] = None
+    often = Counter(label for members in labels.values() for label in members)
+    sizes = Counter(len(members) for members in labels.values())
+    # As many trials of each as leave the most of all, and first those that most scenes have.
+    most = max(
+        sorted(sizes),
+        key=lambda size: size * sum(units for other, units in sizes.items() if other >= size),
+    )
+    compared = {
+        unit: sorted(sorted(members, key=lambda x: (-often[x], _in_order(x)))[:most], key=_in_order)
+        for unit, members in labels.items()
+    }
+    different = set(map(frozenset, compared.values()))
+    # Seeds that are the same everywhere are seeds; others only number the trials of a scene.
+    alike = len(different) == 1
+    if request.generalise == "models" and (not alike or len(min(different)) < FEWEST_TRAININGS):
+        raise UserError(
+            f"newly trained models need {FEWEST_TRAININGS} seeds or more, the same ones in every "
+            "scene: leave --generalise models out."
+        )
+    seeds = tuple(range(most))
+    numbers = {int(label) for label in min(different) if label.isdecimal() and len(label) < 19}
+    if alike and len(numbers) == most:  # `1` and `01` are two labels and one number
+        seeds = tuple(sorted(numbers))
+    return Units(labels, compared, seeds)
+
+
+def _table(
+    trials: Mapping[Address, Received],
+    conditions: Sequence[str],
+    units: Units,
+    request: JudgeQuestion,
+    hashed: bool,
+) -> tuple[Trials, dict[tuple[str, str], list[Key]]]:
+    """Return a row for each trial that should be there, and by variant and condition the keys of
+    those that are not."""
+    rows: list[Trial] = []
+    missing: dict[tuple[str, str], list[Key]] = {}
+    tasks = {unit: row.task for (_, _, (unit, _)), row in trials.items()}
+    ordered = sorted(units.labels, key=_in_order)
+    for condition, variant in product(conditions, (request.baseline, request.repair)):
+        for (at, seed), (index, unit) in product(enumerate(units.seeds), enumerate(ordered)):
+            labels = units.compared[unit][at : at + 1]
+            row = trials.get((variant, condition, (unit, labels[0]))) if labels else None
+            if row is None:
+                missing.setdefault((variant, condition), []).append((unit, "".join(labels)))
+            topology = tasks[unit] if request.cluster == "scene" else ""
+            outcome = _outcome(unit, row, hashed)
+            rows.append(Trial(variant, condition, seed, index, topology, outcome))
+    place = {condition: place for place, condition in enumerate(conditions)}
+    rows.sort(key=lambda row: (place[row.condition], row.variant, row.seed, row.scene_index))
+    return Trials.of(rows), missing
+
+
+def _outcome(scene: str, row: Received | None, hashed: bool) -> Outcome:
+    if row is None:
+        return failed_outcome(scene, "it is not among the results")
+    if row.status is Status.FAILED:
+        return failed_outcome(scene, row.error)
+    initial = row.initial if hashed else "none"
+    return Outcome(scene, row.status, row.time_s, initial, "none", "none", row.metrics)
+
+
+def _in_order(label: str) -> tuple[bool, int, str]:
+    return (not label.isdecimal(), int(label) if label.isdecimal() else 0, label)
 
 
 def _metrics(question: JudgeQuestion) -> dict[str, Metric]:

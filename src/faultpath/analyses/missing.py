@@ -1,4 +1,4 @@
-"""Bounds that trials without an outcome leave: each could have ended either way."""
+"""Trials without an outcome: each could have ended either way."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -6,8 +6,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from faultpath.analyses.compared import Outcomes, paired_scenes
-from faultpath.analyses.contrasts import Design, effect_name
+from faultpath.analyses.contrasts import Design, Outcomes, effect_name, paired_scenes
 from faultpath.run.pairing import Bools
 from faultpath.stats.contrast import Contrast
 from faultpath.stats.distributions import sign_p_value
@@ -32,18 +31,18 @@ def failed_unevenly(success: Outcomes) -> bool:
 
 @dataclass(frozen=True)
 class MissingOutcomes:
-    """What trials without an outcome leave open, whichever way they would have ended."""
+    """Bounds of contrasts, whichever way trials without an outcome would have ended."""
 
     bounds: Mapping[str, tuple[Contrast, Contrast]] = field(
         default_factory=dict[str, tuple[Contrast, Contrast]]
     )
     """By condition, where any trial is missing: the effect with all missing ones against the
     repair, and for it."""
-    unsettled: tuple[str, ...] = ()
+    inconclusive: tuple[str, ...] = ()
     """Contrasts, by name, that would be significant but for those trials."""
     reruns: Mapping[str, tuple[int, int]] = field(default_factory=dict[str, tuple[int, int]])
-    """By condition with an unsettled effect: how many failed trials of the repair and of the
-    baseline have to run to settle it, if they come out as the others did."""
+    """By condition whose effect is one of these: how many failed trials of the repair and of the
+    baseline have to run to make it significant, if they come out as the others did."""
 
 
 def missing_outcomes(
@@ -53,7 +52,7 @@ def missing_outcomes(
     corrected: Mapping[str, Contrast],
     correct: Correct,
 ) -> MissingOutcomes:
-    """Return what missing trials leave open of contrasts that are `corrected` without them."""
+    """Return the bounds that missing trials leave of contrasts, `corrected` without them."""
     if not any(np.isnan(part).any() for pair in success.values() for part in pair):
         return MissingOutcomes()
     low = {condition: filled(pair, favour=False) for condition, pair in success.items()}
@@ -62,7 +61,7 @@ def missing_outcomes(
         design.contrasts(tested, low, alone=high), design.contrasts(tested, high, alone=low)
     )
     worst_case = correct({name: nearest[name] for name in corrected})
-    unsettled = [
+    inconclusive = [
         name
         for name, contrast in corrected.items()
         if contrast.sign not in (0, worst_case[name].sign)
@@ -72,13 +71,13 @@ def missing_outcomes(
             condition: (design.untested(*low[condition]), design.untested(*high[condition]))
             for condition in success
         },
-        unsettled=tuple(unsettled),
+        inconclusive=tuple(inconclusive),
         reruns={
             condition: reruns_needed(
                 corrected, effect_name(condition), success[condition], design, correct
             )
             for condition in tested
-            if effect_name(condition) in unsettled
+            if effect_name(condition) in inconclusive
         },
     )
 
@@ -128,7 +127,7 @@ def reruns_needed(
         return chosen
 
     def holds_with(count: int) -> bool:
-        """Return whether the effect holds, evenly, where the first of the failed pairs ran."""
+        """Return whether the effect is significant, and failures even, where these pairs ran."""
         left = [np.where(rerun(count), np.nan, part) for part in adverse]
         still = [np.where(part & ~rerun(count), np.nan, 0.0) for part in missing]
         if not paired_scenes(*left).any() or failed_unevenly((still[0], still[1])):

@@ -1,4 +1,4 @@
-"""The result of an audit in numbers: what was asked, what came out, and what it means."""
+"""The result of an audit in numbers."""
 
 from collections.abc import Sequence
 from typing import Literal
@@ -38,7 +38,7 @@ def title_of(condition: str) -> str:
 
 
 def invalid_by(findings: Sequence[Finding]) -> Invalid | None:
-    """Return why no result follows from trials in which this was found; `None` where one does."""
+    """Return why no result follows from trials with these findings; `None` where one does."""
     if any(isinstance(f, Unrepeated) or (isinstance(f, Recheck) and f.deviation) for f in findings):
         return "unrepeatable"
     return "unpaired" if any(isinstance(f, Unpaired) for f in findings) else None
@@ -90,7 +90,7 @@ class VariantCounts(Result):
 
 
 class Ahead(Result):
-    """Where along a share, of faulty episodes or of common causes, a version is ahead."""
+    """Part of a share, of faulty episodes or of common causes, in which a version is ahead."""
 
     sign: Literal[-1, 1]
     where: Literal["everywhere", "many", "few", "from", "up to"]
@@ -105,7 +105,7 @@ reach all modules at once: the beta factor."""
 
 
 class ConditionBreakEven(Result):
-    """The shares at which neither variant is decided to be ahead, under one condition."""
+    """The shares at which neither variant is significantly ahead, under one condition."""
 
     condition: str
     over: Share
@@ -119,29 +119,29 @@ class ConditionBreakEven(Result):
 
 
 class Testing(Result):
-    """How the effects and changes of an audit are tested together."""
+    """Common test of the effects and changes of an audit."""
 
     hypotheses: int
-    """Contrasts that share the error rate of 5 %: all that the audit may announce."""
+    """Number of contrasts that share the error rate of 5 %."""
     scenes_needed: int
-    """With fewer, nothing can be decided, whatever comes out."""
+    """With fewer, nothing can be significant, whatever comes out."""
     intervals: str
     """Method of the effects' intervals."""
 
 
 class StoppedAudit(Result):
-    """How far a sequential audit went."""
+    """End of a sequential audit."""
 
     scenes: int
-    """Run; void pairs included."""
+    """Scenes that were run; missing pairs included."""
     reached: bool
-    """Whether what it was to stop for came about."""
+    """Whether it stopped as its question says, and not because scenes ran out."""
     small: tuple[str, ...]
     """Conditions on which the difference was shown to be smaller than the margin."""
 
 
 class AuditResult(Result):
-    """The numbers that tables, pictures and the report show; written as `record.json`."""
+    """Result of an audit in numbers; written as `record.json`."""
 
     format: Literal[7] = 7
     question: Question
@@ -162,15 +162,15 @@ class AuditResult(Result):
     """Why no result follows from these trials: then nothing is significant."""
     testing: Testing
     findings: tuple[Finding, ...] = ()
-    """What was found in its trials, beside what follows from the fields above."""
+    """Findings in its trials, beside what follows from the fields above."""
     stopped: StoppedAudit | None = None
     """State at which a sequential audit ended."""
     earlier: tuple[EarlierAnalysis, ...] = ()
-    """Concluded before, from the same trials and otherwise."""
+    """Earlier analyses of the same trials with another question."""
 
     @property
     def few(self) -> bool:
-        """Whether there are too few scenes to decide anything."""
+        """Whether there are too few scenes for anything to be significant."""
         return self.scenes < self.testing.scenes_needed
 
     @property
@@ -193,7 +193,7 @@ class AuditResult(Result):
         return next((effect for effect in self.effects if effect.condition == condition), None)
 
     def winner(self, sign: int) -> str:
-        """Return the variant of a decided side."""
+        """Return the variant of a side."""
         return self.question.repair if sign > 0 else self.question.baseline
 
     def is_small(self, effect: Effect) -> bool:

@@ -1,4 +1,4 @@
-"""Where two trials of a scene part: at which step what differs first, and how each ended.
+"""Two trials of a scene, compared step by step: what differs first, and how each ended.
 
 Trials of a scene are the same to the bit until something acts on one of them that does not act on
 the other, so what is compared is equal or not. Signals are stored in single precision, and say what
@@ -7,6 +7,7 @@ a source held at a step; where a fault changed a reading, they also say what the
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -28,14 +29,14 @@ _POSITION = "position"
 
 
 class Ended(Frozen):
-    """How one of the two trials ended."""
+    """End of one of the two trials."""
 
     variant: str
     condition: str
     status: Status | None = None
-    """`None` of a trial that never ran."""
+    """`None` for a trial that never ran."""
     time_s: float | None = None
-    """`None` where nobody says when."""
+    """`None` where it is not known."""
     error: str = ""
 
     @property
@@ -57,12 +58,12 @@ class Difference(Frozen, allow_inf_nan=False):
     """Whether `values` are what the reader got, and not what its source held."""
     unit: str = ""
     component: int | None = None
-    """The component that differs most, counted from 1; `None` of a single number."""
+    """The component that differs most, counted from 1; `None` for a single number."""
     part: str = ""
     """Its name, where it has one."""
     values: tuple[float, float]
     others: int = Field(0, ge=0)
-    """How many more of its kind differ at that step."""
+    """Number of others of its kind that differ at that step."""
     most: tuple[float, tuple[float, float]] | None = None
     """When its values differ most, and both there; `None` where that is at this step."""
 
@@ -74,7 +75,7 @@ class Parting(Frozen):
     seed: int
     trials: tuple[Ended, Ended]
     compared: tuple[Kind, ...] = ()
-    """What is known of both, so that where it differs nowhere it is equal; empty where there is
+    """Kinds that are known of both, so that one without a difference is equal; empty where there is
     nothing to compare."""
     first: dict[Kind, Difference] = Field(default_factory=dict[Kind, Difference])
     """The first difference of each kind that differs at all."""
@@ -83,12 +84,17 @@ class Parting(Frozen):
 
 
 @dataclass(frozen=True)
-class Heard:
+class Recorded:
     """A trial with what was recorded of it."""
 
     address: TrialAddress
     outcome: Outcome | None
     signals: Sequence[Signal] = ()
+
+    @cached_property
+    def by_name(self) -> Mapping[str, Signal]:
+        """Its signals by their names."""
+        return {signal.name: signal for signal in self.signals}
 
 
 @dataclass(frozen=True)
@@ -118,7 +124,7 @@ class _Series:
         return (int(differing[0]), int(apart[differing[0]].argmax())) if differing.size else None
 
 
-def parting(system: SystemShown, one: Heard, other: Heard) -> Parting:
+def parting(system: SystemShown, one: Recorded, other: Recorded) -> Parting:
     """Compare two trials of a scene: both variants, or one variant under two conditions."""
     at = one.address
     ends = _ended(one), _ended(other)
@@ -130,22 +136,25 @@ def parting(system: SystemShown, one: Heard, other: Heard) -> Parting:
         "state": list(_state(system, one, other)),
     }
     first: dict[Kind, Difference] = {}
-    for kind, of in series.items():
-        if difference := _first(of, system.control_dt_s):
+    for kind, compared in series.items():
+        if difference := _first(compared, system.control_dt_s):
             first[kind] = difference
-    wired = {variant.name: variant.readers for variant in system.variants}
-    modules = [{module_of(r) for r in wired.get(of.address.variant, ())} for of in (one, other)]
+    readers = {variant.name: variant.readers for variant in system.variants}
+    mine, theirs = (
+        {module_of(reader) for reader in readers.get(trial.address.variant, ())}
+        for trial in (one, other)
+    )
     return Parting(
         scene=at.scene,
         seed=at.seed,
         trials=ends,
-        compared=tuple(kind for kind, of in series.items() if of),
+        compared=tuple(kind for kind, compared in series.items() if compared),
         first=first,
-        alone=(tuple(sorted(modules[0] - modules[1])), tuple(sorted(modules[1] - modules[0]))),
+        alone=(tuple(sorted(mine - theirs)), tuple(sorted(theirs - mine))),
     )
 
 
-def _ended(trial: Heard) -> Ended:
+def _ended(trial: Recorded) -> Ended:
     variant, condition = trial.address.variant, trial.address.condition
     if (outcome := trial.outcome) is None:
         return Ended(variant=variant, condition=condition)
@@ -160,7 +169,7 @@ def _ended(trial: Heard) -> Ended:
 
 def _first(series: Iterable[_Series], dt_s: float) -> Difference | None:
     """Return the first difference; of several at one step that of the first series."""
-    differing = [(at, of) for of in series if (at := of.differs())]
+    differing = [(at, values) for values in series if (at := values.differs())]
     if not differing:
         return None
     (step, component), first = min(differing, key=lambda pair: pair[0][0])
@@ -171,7 +180,7 @@ def _first(series: Iterable[_Series], dt_s: float) -> Difference | None:
     most = float(first.one[last, component]), float(first.other[last, component])
     many = first.one.shape[1] > 1
     units = first.unit.split(", ")
-    if len(units) != first.one.shape[1]:  # one unit for all, or nobody knows which is whose
+    if len(units) != first.one.shape[1]:  # one unit for all, or it is not known which is whose
         units = [first.unit if len(units) == 1 else ""] * first.one.shape[1]
     return Difference(
         step=step,
@@ -188,43 +197,43 @@ def _first(series: Iterable[_Series], dt_s: float) -> Difference | None:
     )
 
 
-def _readings(system: SystemShown, one: Heard, other: Heard) -> Iterator[_Series]:
+def _readings(system: SystemShown, one: Recorded, other: Recorded) -> Iterator[_Series]:
     """Yield what modules of both trials read, first what a fault changed, then by source.
 
     A command that modules read is left to the commands, unless a fault changed it.
     """
-    wired = {variant.name: variant for variant in system.variants}
-    both = [wired[name] for of in (one, other) if (name := of.address.variant) in wired]
+    variants = {variant.name: variant for variant in system.variants}
+    trials = one, other
+    both = [variants[name] for trial in trials if (name := trial.address.variant) in variants]
     if len(both) < 2:
         return
-    named = [{signal.name: signal for signal in of.signals} for of in (one, other)]
     read = set(both[0].readers) & set(both[1].readers)
     commanded = {s.name for s in system.interface.sources if s.provenance is Provenance.COMMANDED}
     unchanged: list[_Series] = []
     for channel in system.interface.channels:
         readers = [reader for reader in channel.readers if reader in read]
         modules = tuple(dict.fromkeys(map(module_of, readers)))
-        old, new = (of.bindings.get(channel.name, channel.sources[0]) for of in both)
-        source = list(_pair(channel.name, named, (old, new), modules))
+        old, new = (variant.bindings.get(channel.name, channel.sources[0]) for variant in both)
+        source = list(_pair(channel.name, trials, (old, new), modules))
         apart = source[0].differs() if source else None
         for reader in readers:
-            yield from _delivered(channel, reader, named, apart[0] if apart else None)
+            yield from _delivered(channel, reader, trials, apart[0] if apart else None)
         if modules and not commanded & {old, new}:
             unchanged += source
     yield from unchanged
 
 
 def _delivered(
-    channel: Channel, reader: str, named: Sequence[Mapping[str, Signal]], until: int | None
+    channel: Channel, reader: str, trials: Sequence[Recorded], until: int | None
 ) -> Iterator[_Series]:
     """Yield what one reader got where a fault changed it in a trial; where in one alone, the other
     got what this one would have got without the fault, `until` their sources differ."""
-    got = [signals.get(f"{channel.name} at {reader}") for signals in named]
-    wrong = [signals.get(f"{channel.name} error at {reader}") for signals in named]
-    values = [None if of is None else of.values for of in got]
+    got = [trial.by_name.get(f"{channel.name} at {reader}") for trial in trials]
+    wrong = [trial.by_name.get(f"{channel.name} error at {reader}") for trial in trials]
+    values = [None if signal is None else signal.values for signal in got]
     for place, (mine, error) in enumerate(zip(got, wrong, strict=True)):
         if mine and error and values[1 - place] is None:
-            values = [of if of is None else of[:until] for of in values]
+            values = [None if part is None else part[:until] for part in values]
             values[1 - place] = (mine.values - error.values)[:until]
             break
     one, other = values
@@ -236,35 +245,33 @@ def _delivered(
 
 def _pair(
     name: str,
-    named: Sequence[Mapping[str, Signal]],
+    trials: Sequence[Recorded],
     sources: tuple[str, str],
     modules: tuple[str, ...] = (),
 ) -> Iterator[_Series]:
     """Yield two sources that both were recorded, as one series."""
-    one, other = (signals.get(source) for signals, source in zip(named, sources, strict=True))
+    one, other = (trial.by_name.get(at) for trial, at in zip(trials, sources, strict=True))
     if one and other and one.values.shape[1] == other.values.shape[1]:
         yield _Series(name, one.values, other.values, modules, False, one.unit, one.parts)
 
 
 def _sources(
-    system: SystemShown, one: Heard, other: Heard, provenances: Sequence[Provenance]
+    system: SystemShown, one: Recorded, other: Recorded, provenances: Sequence[Provenance]
 ) -> Iterator[_Series]:
-    named = [{signal.name: signal for signal in of.signals} for of in (one, other)]
     for source in system.interface.sources:
         if source.provenance in provenances:
-            yield from _pair(source.name, named, (source.name, source.name))
+            yield from _pair(source.name, (one, other), (source.name, source.name))
 
 
-def _state(system: SystemShown, one: Heard, other: Heard) -> Iterator[_Series]:
+def _state(system: SystemShown, one: Recorded, other: Recorded) -> Iterator[_Series]:
     """Yield what the plant gives: positions, its picture, its truths, and what it measures."""
-    traces = [of.outcome.trace if of.outcome else None for of in (one, other)]
+    traces = [trial.outcome.trace if trial.outcome else None for trial in (one, other)]
     if traces[0] is not None and traces[1] is not None:
         yield _Series(_POSITION, traces[0], traces[1], unit="m")
-    named = [{signal.name: signal for signal in of.signals} for of in (one, other)]
     yield from _sources(system, one, other, _PLANT)
     sources = {source.name for source in system.interface.sources}
     for signal in one.signals:
         part, _, truth = signal.name.partition(".")
         if truth and " " not in signal.name and part not in sources:
-            yield from _pair(signal.name, named, (signal.name, signal.name))
-    yield from _pair(DRAWN, named, (DRAWN, DRAWN))
+            yield from _pair(signal.name, (one, other), (signal.name, signal.name))
+    yield from _pair(DRAWN, (one, other), (DRAWN, DRAWN))

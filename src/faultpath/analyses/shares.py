@@ -3,7 +3,7 @@
 import math
 from collections.abc import Collection, Mapping, Sequence
 
-from faultpath.analyses.compared import PairedTrials
+from faultpath.analyses.contrasts import PairedTrials
 from faultpath.analyses.effects import Effect
 from faultpath.analyses.family import TestedContrasts
 from faultpath.analyses.model import AS_RUN, CORRECT, SHARED, Ahead, ConditionBreakEven, Share
@@ -75,11 +75,10 @@ def _shown(region: Region, none: Effect, every: Effect) -> bool:
 
 
 def _ahead(regions: tuple[Region, ...], none: Effect, every: Effect) -> tuple[Ahead, ...]:
-    """Return who is decided to be ahead at which shares.
+    """Return who is significantly ahead at which shares.
 
-    A region counts where it reaches an end (a share of none, or of all) at which the family
-    detects an effect on the same side, away from floor and ceiling: so no sentence contradicts
-    that under the condition.
+    A region counts where it reaches an end (a share of none, or of all) with a significant effect
+    on the same side, away from floor and ceiling: so no sentence contradicts that effect.
     """
     results: list[Ahead] = []
     for region in regions:

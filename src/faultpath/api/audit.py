@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from faultpath.analyses.audit import AuditAnalysis, audit_analysis
+from faultpath.analyses.decide import with_earlier_analyses
 from faultpath.analyses.model import AuditResult
-from faultpath.analyses.stopping import with_earlier_analyses
 from faultpath.api.display import Display
 from faultpath.api.folders import (
     MADE_FROM,

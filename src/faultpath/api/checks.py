@@ -3,7 +3,7 @@
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
-from faultpath.analyses.planning import faults_by_condition
+from faultpath.analyses.analysis import faults_by_condition
 from faultpath.api.display import Display
 from faultpath.api.job import begin, with_question_signature
 from faultpath.faults import Fault

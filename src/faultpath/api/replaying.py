@@ -6,10 +6,10 @@ from pathlib import Path
 from platform import python_version
 
 from faultpath.analyses.audit import audit_analysis
-from faultpath.analyses.examples import choose as picked
 from faultpath.analyses.model import AuditResult
 from faultpath.analyses.pairs import by_scene, read_pairs
-from faultpath.analyses.parting import Heard, Parting, parting
+from faultpath.analyses.pairs import choose as picked
+from faultpath.analyses.parting import Parting, Recorded, parting
 from faultpath.api.folders import RECORD
 from faultpath.api.systems import check_named, choose
 from faultpath.core.errors import UserError
@@ -244,11 +244,11 @@ def where_parted(
     again = {replay.address: replay for replay in replays}
     ids = [scene.id for scene in trials.scenes]
 
-    def heard(variant: str, condition: str, place: int, scene: str) -> Heard:
+    def heard(variant: str, condition: str, place: int, scene: str) -> Recorded:
         at = TrialAddress(variant, condition, trials.seeds[place], scene)
         row = int(trials.planned(variant, condition)[place, ids.index(scene)])
         outcome = trials.outcome(row, scene) if row >= 0 else None
-        return Heard(at, outcome, again[at].signals if at in again else ())
+        return Recorded(at, outcome, again[at].signals if at in again else ())
 
     partings: list[Parting] = []
     for scene in scenes:

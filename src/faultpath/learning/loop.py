@@ -18,8 +18,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import write_file
 from faultpath.core.files.plain import Misread
 from faultpath.core.streams import generator
-from faultpath.learning.model_card import Schedule
-from faultpath.learning.tensor_files import encoded, read_tensors
+from faultpath.learning.model_card import Schedule, encoded, read_tensors
 
 if TYPE_CHECKING:
     from torch import LongTensor, Tensor, nn

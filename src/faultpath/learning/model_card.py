@@ -1,30 +1,33 @@
 """Files of a fitted module: its weights, and a card with their origin.
 
-A card is read without torch. Weights are safetensors: reading them runs no code.
+A card is read without torch. Files of tensors are safetensors: reading them runs no code.
 """
 
 from __future__ import annotations
 
 import json
 import platform
+from collections.abc import Mapping
 from hashlib import sha256
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, Self, TypeVar
 
 from pydantic import Field
 
 from faultpath.core import __version__
 from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import write_file, write_text
-from faultpath.core.files.opening import contents
+from faultpath.core.files.opening import contents, opened
 from faultpath.core.files.plain import Misread, model_of
 from faultpath.core.results import Frozen
+from faultpath.core.text import extra
 from faultpath.learning.repair import Repair
-from faultpath.learning.tensor_files import encoded, safetensors
 from faultpath.loop import TapCount
 
 if TYPE_CHECKING:
-    from torch import nn
+    from torch import Tensor, nn
+
+_ENTRY = "note"  # only one entry, since the order of several in a file is not fixed
 
 
 class Schedule(Frozen, allow_inf_nan=False):
@@ -207,7 +210,7 @@ def fill(net: nn.Module, path: Path, kind: type[CardKind]) -> CardKind:
             f"the weights in {path} are not those of its card: copy both files again or fit the "
             "model again"
         )
-    codec = safetensors()
+    codec = _safetensors()
     from safetensors import SafetensorError
 
     try:
@@ -228,3 +231,46 @@ def weights_sha256(net: nn.Module) -> str:
 def parameter_count(net: nn.Module) -> int:
     """Return the number of fitted parameters."""
     return sum(weight.numel() for weight in net.parameters() if weight.requires_grad)
+
+
+def encoded(tensors: Mapping[str, Tensor], note: object = None) -> bytes:
+    """Return the bytes of a file of tensors and a JSON value, which depend on these alone."""
+    from torch import contiguous_format as rows  # safetensors takes no other order
+
+    own = {name: value.detach().cpu().clone(memory_format=rows) for name, value in tensors.items()}
+    return _safetensors().save(own, None if note is None else {_ENTRY: json.dumps(note)})
+
+
+def read_note(path: Path) -> Any:
+    """Return the note of a file, `None` without one; raises as `read_tensors`."""
+    return _read(path, tensors=False)[0]
+
+
+def read_tensors(path: Path) -> tuple[Any, dict[str, Tensor]]:
+    """Return the note and the tensors of a file; `OSError`, or `Misread` for a damaged one."""
+    return _read(path, tensors=True)
+
+
+def _read(path: Path, tensors: bool) -> tuple[Any, dict[str, Tensor]]:
+    _safetensors()
+    from safetensors import SafetensorError, safe_open
+
+    opened(path).close()
+    try:
+        with safe_open(path, framework="pt") as file:
+            note = json.loads((file.metadata() or {}).get(_ENTRY, "null"))
+            names = list(file.keys()) if tensors else []
+            return note, {name: file.get_tensor(name).clone() for name in names}
+    except (SafetensorError, ValueError) as error:
+        raise Misread("is damaged, or no file of tensors") from error
+
+
+def _safetensors() -> Any:
+    """Return the module that writes tensors; `UserError` where it is not installed."""
+    try:
+        import safetensors.torch
+    except ModuleNotFoundError as error:
+        raise UserError(
+            f"fits are kept as safetensors, which is not installed: {extra('torch')}"
+        ) from error
+    return safetensors.torch

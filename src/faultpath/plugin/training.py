@@ -4,13 +4,15 @@ from faultpath.learning.loop import FitProgress, FitTask, Journal, minibatches, 
 from faultpath.learning.model_card import (
     Card,
     Schedule,
+    encoded,
     fill,
     parameter_count,
     read_card,
+    read_note,
+    read_tensors,
     save,
     weights_sha256,
 )
-from faultpath.learning.tensor_files import encoded, read_note, read_tensors
 from faultpath.learning.windows import validates, window_taps
 
 __all__ = [

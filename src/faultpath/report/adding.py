@@ -7,9 +7,8 @@ import numpy as np
 from markupsafe import Markup
 from numpy.typing import NDArray
 
-from faultpath.analyses.examples import choose
 from faultpath.analyses.model import CORRECT, where
-from faultpath.analyses.pairs import Pair, by_scene
+from faultpath.analyses.pairs import Pair, by_scene, choose
 from faultpath.report.inputs import ReportInput
 from faultpath.report.sentences import wording
 from faultpath.report.svg import Axis, Point, Svg, covering, draw_axes, tick_label

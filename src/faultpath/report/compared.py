@@ -10,8 +10,8 @@ from pathlib import Path
 
 from faultpath.analyses.contrasts import effect_name
 from faultpath.analyses.effects import Effect
+from faultpath.analyses.family import decide_sizes
 from faultpath.analyses.model import CORRECT, SHARED, AuditResult
-from faultpath.analyses.sweep import decide_sizes
 from faultpath.report.inputs import ReportInput
 from faultpath.report.sentences import phrases, wording
 from faultpath.report.sentences.headline import headline

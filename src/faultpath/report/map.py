@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from itertools import pairwise, product
 from pathlib import Path
 
-from faultpath.analyses.map.lattice import SHARED
 from faultpath.analyses.map.model import MapResult
+from faultpath.analyses.model import SHARED
 from faultpath.core.text import counted
 from faultpath.report.frame import render, write_pages
 from faultpath.report.sentences import wording, words

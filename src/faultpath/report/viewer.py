@@ -10,10 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.analyses.examples import alike, choose
 from faultpath.analyses.model import SHARED, AuditResult
-from faultpath.analyses.pairs import Pair, by_scene, is_sample
-from faultpath.analyses.parting import Heard, parting
+from faultpath.analyses.pairs import Pair, alike, by_scene, choose, is_sample
+from faultpath.analyses.parting import Recorded, parting
 from faultpath.report.inputs import ReportInput
 from faultpath.report.plots import Plot, first_plot, plots_of
 from faultpath.report.sentences import wording
@@ -207,7 +206,7 @@ class _Trials:
         if not all(signals.get(at) for at in addresses):
             return None
         one, other = (
-            Heard(at, outcome, signals[at])
+            Recorded(at, outcome, signals[at])
             for at, outcome in zip(addresses, (pair.baseline, pair.repair), strict=True)
         )
         differences = parting(self.source.system, one, other)

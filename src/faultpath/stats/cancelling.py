@@ -1,15 +1,15 @@
 """Errors that cancel: each alone costs success, both together less than either.
 
 Outcomes are success by scene, averaged over seeds where there are several, and NaN where a trial
-has none; a comparison uses the scenes in which both have an outcome. An error is named by its index
-in ``singles``, a pair by both indices.
+has none; a comparison uses the scenes in which both have an outcome. An error is named by a number,
+a pair by both numbers.
 
 Errors that add up are not tested: on the scale of success rates, harms that are additive inside the
 system look like interactions, because of floor and ceiling.
 """
 
 from collections.abc import Mapping, Set
-from typing import Literal, NamedTuple, TypeAlias, TypeVar
+from typing import Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -26,7 +26,6 @@ REGAINED = 0.5
 _DIGITS = 9
 """Digits of means over seeds, so that equal ones differ by exactly 0."""
 Key: TypeAlias = tuple[int, int]
-Name = TypeVar("Name", int, Key)
 
 
 class StageOne(NamedTuple):
@@ -83,7 +82,7 @@ class Pair(NamedTuple):
 class Cancelling(NamedTuple):
     """Single errors and pairs of a scan."""
 
-    singles: tuple[Single, ...]
+    singles: dict[int, Single]
     pairs: dict[Key, Pair]
 
 
@@ -99,7 +98,7 @@ def stage_one(none: Floats, singles: Floats) -> StageOne:
 
 def cancelling(
     none: Floats,
-    singles: Floats,
+    singles: Mapping[int, Floats],
     pairs: Mapping[Key, Floats],
     same_source: Set[Key],
     alpha: float = ALPHA,
@@ -114,7 +113,7 @@ def cancelling(
 
     Args:
         none: Outcomes without an error, [scenes].
-        singles: Outcomes with each error alone, [errors, scenes].
+        singles: Outcomes with each error alone, [scenes].
         pairs: Outcomes with both errors of each pair, [scenes].
         same_source: Pairs whose errors are of one source.
         alpha: Level of all statements on pairs together.
@@ -124,8 +123,8 @@ def cancelling(
     alone = _singles(none, singles, alpha / 2.0)
     compared = _compared(none, singles, pairs) if pairs else {}
     hurt = [key for key in compared if all(alone[error].kind == "hurts" for error in key)]
-    corrected = _holm({key: compared[key].p_value for key in hurt})
-    covers = _holm(
+    corrected = holm({key: compared[key].p_value for key in hurt})
+    covers = holm(
         {
             key: max(compared[key].p_value, 2.0 * alone[compared[key].worse].p_value)
             for key in same_source
@@ -176,34 +175,38 @@ def ahead(first: Floats, second: Floats) -> Floats:
     return p_values
 
 
-def _singles(none: Floats, singles: Floats, alpha: float) -> tuple[Single, ...]:
-    hurts, helps = ahead(none, singles), ahead(singles, none)
-    corrected, helping = (_holm(dict(enumerate(map(float, p)))) for p in (hurts, helps))
-    known = ~np.isnan(none - singles)
-    means = (
-        _means(np.where(known, values, np.nan))
-        for values in (np.broadcast_to(none, known.shape), singles)
+def _singles(none: Floats, singles: Mapping[int, Floats], alpha: float) -> dict[int, Single]:
+    outcomes = np.stack(list(singles.values()))
+    hurts, helps = ahead(none, outcomes), ahead(outcomes, none)
+    corrected, helping = (
+        holm(dict(zip(singles, map(float, p), strict=True))) for p in (hurts, helps)
     )
-    results: list[Single] = []
-    for error, (without, alone) in enumerate(zip(*means, strict=True)):
+    known = ~np.isnan(none - outcomes)
+    without, alone = (
+        _means(np.where(known, values, np.nan))
+        for values in (np.broadcast_to(none, known.shape), outcomes)
+    )
+    results: dict[int, Single] = {}
+    for at, error in enumerate(singles):
         hurt, helped = corrected[error] <= alpha, helping[error] <= alpha
-        single = Single(
+        results[error] = Single(
             kind="hurts" if hurt else "helps" if helped else None,
-            none=100.0 * float(without),
-            alone=100.0 * float(alone),
-            scenes=int(known[error].sum()),
-            p_value=float(hurts[error]),
+            none=100.0 * float(without[at]),
+            alone=100.0 * float(alone[at]),
+            scenes=int(known[at].sum()),
+            p_value=float(hurts[at]),
             corrected_p=corrected[error],
             helps_p=helping[error],
         )
-        results.append(single)
-    return tuple(results)
+    return results
 
 
-def _compared(none: Floats, singles: Floats, pairs: Mapping[Key, Floats]) -> dict[Key, Pair]:
+def _compared(
+    none: Floats, singles: Mapping[int, Floats], pairs: Mapping[Key, Floats]
+) -> dict[Key, Pair]:
     """Return the pairs beside their errors alone, with p-values still uncorrected."""
     both = np.stack(list(pairs.values()))
-    parts = singles[np.array(list(pairs)).T]  # [2, pairs, scenes]
+    parts = np.stack([[singles[key[place]] for key in pairs] for place in (0, 1)])
     outcomes = np.stack([np.broadcast_to(none, both.shape), *parts, both])
     known = ~np.isnan(outcomes.sum(axis=0))
     percent = 100.0 * _means(np.where(known, outcomes, np.nan))
@@ -229,9 +232,3 @@ def _means(values: Floats) -> Floats:
     known = ~np.isnan(values)
     with np.errstate(invalid="ignore"):
         return np.nansum(values, axis=-1) / known.sum(axis=-1)
-
-
-def _holm(p_values: Mapping[Name, float]) -> dict[Name, float]:
-    names = {str(name): p for name, p in p_values.items()}
-    adjusted = holm(names, dict.fromkeys(names, 1.0))
-    return {name: adjusted[str(name)] for name in p_values}

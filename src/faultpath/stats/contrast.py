@@ -12,13 +12,7 @@ from operator import add
 import numpy as np
 
 from faultpath.stats.distributions import t_interval
-from faultpath.stats.estimate import (
-    SCENES,
-    SCENES_AND_SEEDS,
-    Estimate,
-    PairedTest,
-    Sign,
-)
+from faultpath.stats.estimate import SCENES, SCENES_AND_SEEDS, Estimate, PairedTest, Sign
 from faultpath.stats.inputs import Floats
 from faultpath.stats.resamples import Resamples
 from faultpath.stats.score import SceneValues, combined
@@ -52,9 +46,7 @@ class Contrast:
     against_zero: bool = True
     """Whether 0 means no difference; not for rates, ratios and counts."""
     test: PairedTest | None = None
-    """See `with_test`; without a test the interval alone decides."""
-    notable: float | None = None
-    """Size of a notable difference: if one could have been missed, none found proves nothing."""
+    """See `with_test`."""
 
     @property
     def won(self) -> tuple[tuple[int, int], ...] | None:
@@ -97,15 +89,14 @@ class Contrast:
         """The 95 % interval."""
         return self.ends(0.95)
 
-    def estimate(self, level: float = 0.95) -> Estimate:
-        """Return the value with its interval at ``level``, for storing."""
-        low, high = self.ends(level) or (None, None)
+    def estimate(self) -> Estimate:
+        """Return the value with its 95 % interval, for storing."""
+        low, high = self.interval or (None, None)
         resamples = self.resamples.n_resamples if self.resamples else 0
         return Estimate(
             value=self.value,
             low=low,
             high=high,
-            level=level,
             unit=self.unit,
             method=self.method + (f", {resamples} resamples" if self.scenes is None else ""),
             estimand=self.estimand,
@@ -169,7 +160,6 @@ def weighted_sum(weights: Sequence[float], contrasts: Sequence[Contrast]) -> Con
         pairs=None,
         scenes=scenes,
         test=None,
-        notable=None,
     )
 
 

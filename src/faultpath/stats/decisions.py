@@ -2,21 +2,16 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Literal, TypeAlias
+from typing import Literal, TypeAlias, TypeVar
 
 import numpy as np
 
 from faultpath.stats import betting, score, unconditional
 from faultpath.stats.contrast import Contrast, ordered_sum
 from faultpath.stats.distributions import sign_p_value, t_p_value
-from faultpath.stats.estimate import (
-    ALPHA,
-    DEGREES,
-    EM,
-    SCENES_AND_SEEDS,
-    PairedTest,
-)
+from faultpath.stats.estimate import ALPHA, DEGREES, EM, SCENES_AND_SEEDS, PairedTest
 
+Name = TypeVar("Name", str, int, tuple[int, int])
 Turn: TypeAlias = Literal["reversal", "interaction", "none"]
 
 
@@ -38,13 +33,13 @@ def with_test(contrast: Contrast) -> Contrast:
         raise ValueError(f"an effect in {contrast.unit} by {contrast.method} has no test")
     elif scenes.test == "sequential":
         name = "bets on the mean"
-        p, ahead = betting.p_value(*scenes.kinds(), scenes.bound)
+        p, ahead = betting.p_value(*scenes.kinds, scenes.bound)
     elif scenes.test == "unconditional" and one_seed:
         name = EM + unconditional.approximation(contrast.n_scenes)
         p, ahead = unconditional.p_value(first, second, contrast.n_scenes), first - second
     elif scenes.test == "unconditional":
         name = DEGREES + unconditional.approximation(contrast.n_scenes)
-        p = score.degrees_p_value(*scenes.kinds(), scenes.bound)
+        p = score.degrees_p_value(*scenes.kinds, scenes.bound)
     else:
         name = "exact McNemar" if one_seed else "sign test on scene means"
         name = "sign test on scene differences" if contrast.pairs is None else name
@@ -70,36 +65,47 @@ def decide_family(
     each contrast has its own share of it by itself, which is Bonferroni's procedure.
     """
     tests = {name: contrast.test for name, contrast in contrasts.items() if contrast.test}
-    p_values = {name: tests[name].p_value for name in contrasts}
-    weight = {name: 1.0 if weights is None else weights[name] for name in contrasts}
-    adjusted = holm(p_values, weight)
+    p_values = {name: test.p_value for name, test in tests.items()}
     if shares is not None:
         adjusted = {name: min(1.0, p / shares[name]) for name, p in p_values.items()}
-    ordered = sorted(p_values, key=lambda name: p_values[name] / weight[name])
+        critical = {name: alpha * shares[name] for name in p_values}
+    else:
+        weight = {name: weights[name] if weights else 1.0 for name in p_values}
+        adjusted = holm(p_values, weight)
+        critical = {name: _critical_p(name, p_values, weight, alpha) for name in p_values}
     corrected: dict[str, Contrast] = {}
     for name, contrast in contrasts.items():
         leans = tests[name].leans if adjusted[name] <= alpha else 0
+        # An interval takes long: it is not computed where the test does not reject.
         sign = leans if leans and leans == contrast.sign_of_interval else 0
-        if shares:
-            critical = alpha * shares[name]
-        else:
-            remaining = dict(weight)
-            for other in ordered:
-                if other == name:
-                    continue
-                if p_values[other] > alpha * weight[other] / ordered_sum(remaining.values()):
-                    break
-                del remaining[other]
-            critical = alpha * weight[name] / ordered_sum(remaining.values())
-        test = tests[name]._replace(sign=sign, corrected_p=adjusted[name], critical_p=critical)
+        test = tests[name]._replace(
+            sign=sign, corrected_p=adjusted[name], critical_p=critical[name]
+        )
         corrected[name] = replace(contrast, test=test)
     return corrected
 
 
-def holm(p_values: Mapping[str, float], weights: Mapping[str, float]) -> dict[str, float]:
-    """Return p-values adjusted by Holm's weighted procedure; any positive weights."""
+def _critical_p(
+    name: str, p_values: Mapping[str, float], weights: Mapping[str, float], alpha: float
+) -> float:
+    """Return the largest p with which Holm's procedure rejects, given the others' p-values."""
+    remaining = dict(weights)
+    for other in sorted(p_values, key=lambda name: p_values[name] / weights[name]):
+        if other == name:
+            continue
+        if p_values[other] > alpha * weights[other] / ordered_sum(remaining.values()):
+            break
+        del remaining[other]
+    return alpha * weights[name] / ordered_sum(remaining.values())
+
+
+def holm(
+    p_values: Mapping[Name, float], weights: Mapping[Name, float] | None = None
+) -> dict[Name, float]:
+    """Return p-values adjusted by Holm's procedure, or his weighted one; any positive weights."""
+    weights = dict.fromkeys(p_values, 1.0) if weights is None else weights
     ordered = sorted(p_values, key=lambda name: p_values[name] / weights[name])
-    adjusted: dict[str, float] = {}
+    adjusted: dict[Name, float] = {}
     largest = 0.0
     for index, name in enumerate(ordered):
         remaining = ordered_sum(weights[other] for other in ordered[index:])

@@ -77,14 +77,9 @@ def t_interval(values: Floats, level: float, least_variance: float = 0.0) -> tup
     """
     n = values.shape[-1]
     error = np.sqrt(np.maximum(values.var(axis=-1, ddof=1), least_variance) / n)
-    half = t_quantile((1.0 + level) / 2.0, n - 1.0) * error
+    half = float(scipy.special.stdtrit(n - 1.0, (1.0 + level) / 2.0)) * error
     mean = values.mean(axis=-1)
     return np.asarray(mean - half), np.asarray(mean + half)
-
-
-def t_quantile(probability: float, freedom: float) -> float:
-    """Return the quantile of Student's t distribution."""
-    return float(scipy.special.stdtrit(freedom, probability))
 
 
 def normal_quantile(probability: float) -> float:
@@ -92,11 +87,6 @@ def normal_quantile(probability: float) -> float:
     return float(scipy.special.ndtri(probability))
 
 
-def normal_tails(z: Floats) -> Floats:
+def normal_tails(z: ArrayLike) -> Floats:
     """Return the two-sided tail probabilities of the standard normal distribution at ``z``."""
     return np.asarray(2.0 * scipy.special.ndtr(-np.abs(z)), dtype=np.float64)
-
-
-def normal_p_value(z: float) -> float:
-    """Return the two-sided tail probability of the standard normal distribution at ``z``."""
-    return float(2.0 * scipy.special.ndtr(-abs(z)))

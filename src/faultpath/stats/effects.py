@@ -1,12 +1,11 @@
 """Contrasts of paired variants: success, means, medians (paper, "Statistical Aggregation")."""
 
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 
 from faultpath.stats.contrast import Contrast
-from faultpath.stats.estimate import SCENES, SCENES_AND_SEEDS
+from faultpath.stats.estimate import SCENES, SCENES_AND_SEEDS, FixedSize
 from faultpath.stats.inputs import Floats, Numbers, by_scene_and_seed, paired
 from faultpath.stats.resamples import Resamples, quantiles
 from faultpath.stats.score import SceneValues
@@ -19,7 +18,7 @@ def success_effect(
     *,
     models: bool = False,
     sequential: bool = False,
-    test: Literal["unconditional", "conditional"] = "unconditional",
+    test: FixedSize = "unconditional",
 ) -> Contrast:
     """Return the difference in success in percentage points.
 
@@ -34,7 +33,7 @@ def success_effect(
         models: Whether the result is to hold for newly trained models too; each seed is one.
         sequential: Whether the number of scenes was not fixed beforehand. Interval and test then
             hold at whatever scene the audit stops.
-        test: See `faultpath.stats.estimate.TestKind`; the interval goes with the test.
+        test: See `TestKind`; the interval goes with the test.
     """
     one, two = paired(first, second, binary=True)
     pairs = one - two
@@ -126,17 +125,11 @@ def median_effect(
     successful scenes varies between resamples, as it would between new libraries; the few resamples
     without any are left out. ``n_scenes`` counts the jointly successful scenes.
     """
-    mask = np.asarray(joint, dtype=np.bool_)
-    mask = mask[:, np.newaxis] if mask.ndim == 1 else mask
-
-    def counted(values: Numbers, name: str) -> Floats:
-        array = np.asarray(values, dtype=np.float64)
-        array = array[:, np.newaxis] if array.ndim == 1 else array
-        if array.shape != mask.shape:
-            raise ValueError(f"{name} has shape {array.shape}, joint has {mask.shape}")
-        return by_scene_and_seed(np.where(mask, array, 0.0), name)
-
-    difference = counted(first, "first") - counted(second, "second")
+    if not np.shape(first) == np.shape(second) == np.shape(joint):
+        shapes = f"{np.shape(first)}, {np.shape(second)} and {np.shape(joint)}"
+        raise ValueError(f"first, second and joint need one shape, got {shapes}")
+    mask = by_scene_and_seed(joint, "joint", binary=True) == 1.0
+    difference = np.subtract(*paired(*(np.where(joint, part, 0.0) for part in (first, second))))
     resamples.check(len(difference))
     used = mask.any(axis=1)
     if not used.any():

@@ -12,8 +12,9 @@ from faultpath.core.results import Frozen
 
 ALPHA = 0.05
 Sign: TypeAlias = Literal[-1, 0, 1]
-TestKind: TypeAlias = Literal["unconditional", "conditional", "sequential"]
-"""How paired outcomes are tested.
+FixedSize: TypeAlias = Literal["unconditional", "conditional"]
+TestKind: TypeAlias = FixedSize | Literal["sequential"]
+"""How paired outcomes are tested; `FixedSize` where the number of scenes was fixed beforehand.
 
 `unconditional`: Lloyd's E+M test, for several seeds with the score; audits use it. `conditional`:
 exact McNemar or the sign test, which take the number of discordant scenes as fixed; the paper uses
@@ -27,8 +28,8 @@ SCENES_AND_SEEDS = "new scenes like these and models newly trained with other se
 class Estimate(Frozen, allow_inf_nan=False):
     """A value, its interval, and what that interval generalises to.
 
-    ``low`` and ``high`` are both None when no interval was asked for or none exists. ``per_seed``
-    holds the same quantity computed from each seed alone, in seed order.
+    ``low`` and ``high`` are both None where there is no interval. ``per_seed`` holds the same
+    quantity computed from each seed alone, in seed order.
     """
 
     value: float

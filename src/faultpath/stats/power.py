@@ -5,7 +5,6 @@ for newly trained models: a few trainings do not determine their own spread.
 """
 
 from functools import lru_cache
-from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,15 +12,13 @@ from numpy.typing import NDArray
 from faultpath.core.streams import generator
 from faultpath.stats import unconditional
 from faultpath.stats.distributions import binomial_cdf, binomial_pmf, likely
-from faultpath.stats.estimate import ALPHA
+from faultpath.stats.estimate import ALPHA, FixedSize
 from faultpath.stats.inputs import Floats, Numbers, by_scene_and_seed
 from faultpath.stats.score import degrees_rejects, quantile, reach, rejects
 
-FixedSize: TypeAlias = Literal["unconditional", "conditional"]
-"""Tests of a number of scenes that was fixed beforehand; see `estimate.TestKind`."""
-
 LEVEL = 0.95
 """Level of the interval that has to exclude 0 too."""
+POWER = 0.8
 AUDITS = 2000
 """Simulated audits, where power has no closed form."""
 _PRECISION = 1e-3
@@ -147,10 +144,9 @@ def detectable(
     *,
     test: FixedSize = "unconditional",
     alpha: float = ALPHA,
-    power: float = 0.8,
     on_top: bool = False,
 ) -> float | None:
-    """Return the detectable difference in success (pp), given the pairs of an audit.
+    """Return the difference in success (pp) detected with 80 % power, given an audit's pairs.
 
     ``pairs`` [scenes, seeds] are 1, 0 or -1, and NaN where an outcome is missing.
 
@@ -168,18 +164,10 @@ def detectable(
     ran = seeds != _MISSING
     seeds = np.where(ran, seeds, 0.0)
     n_scenes, n_seeds = seeds.shape
-    rate, alike = float(np.abs(seeds).sum() / ran.sum()), 1.0
+    rate = float(np.abs(seeds).sum() / ran.sum())
+    alike = _share_alike(seeds, ran, rate) if rate > 0.0 and n_seeds > 1 else 1.0
     if rate == 0.0:
         rate = 1.0 - ((1.0 - LEVEL) / 2.0) ** (1.0 / n_scenes)
-    elif n_seeds > 1:
-        # Two seeds' product has the mean ``alike * rate + (1 - alike) * mean ** 2``. Prior counts
-        # are added on either side, because few discordant pairs tell little.
-        sums = seeds.sum(axis=1) ** 2 - np.abs(seeds).sum(axis=1)
-        together = ran.sum(axis=1) * (ran.sum(axis=1) - 1)  # ordered pairs of a scene's seeds
-        products = n_scenes * float(sums.sum()) / max(1, int(together.sum()))
-        by_chance = n_scenes * float(seeds.sum() / ran.sum()) ** 2
-        seen = n_scenes * rate - by_chance + _PRIOR_SCENES
-        alike = min(1.0, max(0.0, (products - by_chance + _PRIOR_ALIKE * _PRIOR_SCENES) / seen))
 
     def reached(difference: float) -> float:
         share = min(1.0, rate + difference if on_top else max(rate, difference))
@@ -188,10 +176,25 @@ def detectable(
         lean = difference / share
         return simulated_power(n_scenes, n_seeds, share, lean, alike, alpha, test)
 
-    if reached(1.0) < power:
+    if reached(1.0) < POWER:
         return None
     low, high = 0.0, 1.0
     while high - low > _PRECISION * high:
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if reached(middle) >= power else (middle, high)
+        low, high = (low, middle) if reached(middle) >= POWER else (middle, high)
     return 100.0 * high
+
+
+def _share_alike(seeds: Floats, ran: NDArray[np.bool_], rate: float) -> float:
+    """Return the estimated share of scenes that treat all seeds alike.
+
+    Two seeds' product has the mean ``alike * rate + (1 - alike) * mean ** 2``. Prior counts are
+    added on either side, because few discordant pairs tell little.
+    """
+    n_scenes = len(seeds)
+    sums = seeds.sum(axis=1) ** 2 - np.abs(seeds).sum(axis=1)
+    together = ran.sum(axis=1) * (ran.sum(axis=1) - 1)  # ordered pairs of a scene's seeds
+    products = n_scenes * float(sums.sum()) / max(1, int(together.sum()))
+    by_chance = n_scenes * float(seeds.sum() / ran.sum()) ** 2
+    seen = n_scenes * rate - by_chance + _PRIOR_SCENES
+    return min(1.0, max(0.0, (products - by_chance + _PRIOR_ALIKE * _PRIOR_SCENES) / seen))

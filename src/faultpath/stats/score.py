@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from faultpath.stats import betting, unconditional
-from faultpath.stats.distributions import normal_p_value, normal_quantile
+from faultpath.stats.distributions import normal_quantile, normal_tails
 from faultpath.stats.estimate import TestKind
 from faultpath.stats.inputs import Floats
 
@@ -64,14 +64,14 @@ class SceneValues:
         scenes = cls(values, bound, bound, scale, test=test)
         if test != "conditional":
             return scenes
-        kinds, counts = scenes.kinds()
+        kinds, counts = scenes.kinds
         # In both orders, since swapping the variants reverses the order of the sum.
         orders = ((kinds, counts), (kinds[::-1], counts[::-1]))
         return replace(scenes, far=float(max(reach(*pair, bound) for pair in orders)))
 
     def interval(self, level: float = 0.95) -> tuple[float, float]:
         """Return the interval of the mean, in the unit of the effect."""
-        ends = self.ends(*self.kinds(), np.asarray(self.far), self.bound, level)
+        ends = self.ends(*self.kinds, np.asarray(self.far), self.bound, level)
         low, high = (self.scale * (float(end) + self.centre) for end in ends)
         return low + 0.0, high + 0.0  # never -0.0
 
@@ -85,12 +85,9 @@ class SceneValues:
             return degrees_interval(values, counts, bound, level)
         return interval(values, counts, far, quantile(level))
 
-    def kinds(self) -> tuple[Floats, Floats]:
-        """Return the distinct values, ascending, and how often each occurred."""
-        return self._kinds
-
     @cached_property
-    def _kinds(self) -> tuple[Floats, Floats]:
+    def kinds(self) -> tuple[Floats, Floats]:
+        """The distinct values, ascending, and how often each occurred."""
         values, counts = np.unique(self.values, return_counts=True)
         return values, counts.astype(np.float64)
 
@@ -215,7 +212,7 @@ def p_value(values: Floats, counts: Floats, far: float) -> float:
         multiplier = 0.5 * (low + high)
         larger = float((counts * residual / (1.0 + multiplier * residual)).sum()) > 0.0
         low, high = (multiplier, high) if larger else (low, multiplier)
-    return normal_p_value(float(np.sqrt(total * low * abs(mean))))
+    return float(normal_tails(np.sqrt(total * low * abs(mean))))
 
 
 def interval(values: Floats, counts: Floats, far: Floats, z: float) -> tuple[Floats, Floats]:

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from faultpath.system.episodes import Episode, Measure
     from faultpath.system.functions import FunctionPlant
     from faultpath.system.gymnasium import GymnasiumPlant
-    from faultpath.system.loop_system import LoopSystem, Wiring
+    from faultpath.system.loop_system import LoopSystem
     from faultpath.system.modules import row_wise, writes
     from faultpath.system.options import Offered, Option
     from faultpath.system.outcome import VEHICLE, Metric, Outcome, Status
@@ -85,7 +85,6 @@ __all__ = [
     "Taps",
     "Uncertainty",
     "Variant",
-    "Wiring",
     "interface_of",
     "library_of",
     "read_interface",
@@ -136,7 +135,6 @@ _HOMES = {
     "Uncertainty": "faultpath.interface",
     "VEHICLE": "faultpath.system.outcome",
     "Variant": "faultpath.system.declared",
-    "Wiring": "faultpath.system.loop_system",
     "interface_of": "faultpath.loop.graph",
     "library_of": "faultpath.system.checks",
     "read_interface": "faultpath.interface",

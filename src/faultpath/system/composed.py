@@ -25,7 +25,7 @@ from faultpath.system.arguments import (
 from faultpath.system.checks import UNNAMED
 from faultpath.system.declared import Library, SceneRef
 from faultpath.system.episodes import SCENE, EpisodePlant
-from faultpath.system.loop_system import LoopSystem, Wiring
+from faultpath.system.loop_system import LoopSystem
 from faultpath.system.modules import FunctionModule
 from faultpath.system.system import BLOCK
 
@@ -99,23 +99,22 @@ class ComposedSystem(LoopSystem):
         self._data_files = tuple(data_files)
         self.components = dict[str, tuple[str, ...]]()
         units, alternatives = units_of(units), channels_of(channels or {})
-        self._parts, self._wirings = dict[str, Parts](), dict[str, Wiring]()
+        self._parts, self._bindings = dict[str, Parts](), dict[str, Mapping[str, str]]()
         for variant, parts in variants_of(variants).items():
             modules = modules_of(variant, parts.of(None) if isinstance(parts, Parts) else parts)
             listed = Parts(f"Modules: {', '.join(map(str, modules))}.", modules)
             self._parts[variant] = parts if isinstance(parts, Parts) else listed
             written = [name for module in modules for name in module.writes]
-            bindings = {
+            self._bindings[variant] = {
                 channel: next((n for n in (*written, *plant.senses) if n in sources), sources[0])
                 for channel, sources in alternatives.items()
             }
-            self._wirings[variant] = Wiring(self._parts[variant].description, bindings)
         self._interface = self._declared(units, alternatives, plant.shapes)
         recorder = _ShapeRecorder()
         for variant in self._parts:
-            wired = self.wirings[variant].bindings
+            bindings = self._bindings[variant]
             try:
-                executable = graph(self._interface, plant, self.modules(variant, None), wired)
+                executable = graph(self._interface, plant, self.modules(variant, None), bindings)
             except SystemMistake as error:
                 raise SystemMistake(f"variant '{variant}': {error}") from None
             batch = Batch((f"{SCENE}0",), 0, self.control_dt_s)
@@ -138,8 +137,12 @@ class ComposedSystem(LoopSystem):
 
     @property
     @override
-    def wirings(self) -> Mapping[str, Wiring]:
-        return self._wirings
+    def descriptions(self) -> Mapping[str, str]:
+        return {variant: parts.description for variant, parts in self._parts.items()}
+
+    @override
+    def bindings(self, variant: str) -> Mapping[str, str]:
+        return self._bindings[variant]
 
     @override
     def plant(self) -> EpisodePlant:

@@ -3,7 +3,6 @@
 import math
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -19,28 +18,19 @@ BLOCKS, LARGEST_BLOCK = 64, 500
 """Number of blocks of a large library, enough for many workers, and scenes of one block."""
 
 
-@dataclass(frozen=True)
-class Wiring:
-    """Description and bindings of a variant; all else follows from its modules."""
-
-    description: str
-    bindings: Mapping[str, str] = field(default_factory=dict[str, str])
-    """Channel to source, where it is not the channel's first source."""
-
-
 class LoopSystem(System):
     """A system built from a plant and modules.
 
     Readers and privileged sources of its variants follow from the modules' ports, and `run` is the
-    loop. Its author writes the parts and chooses those of each variant.
+    loop. Its author writes the parts, chooses those of each variant and describes it.
     """
 
     block_size = None
 
     @property
     @abstractmethod
-    def wirings(self) -> Mapping[str, Wiring]:
-        """The variants by name."""
+    def descriptions(self) -> Mapping[str, str]:
+        """Each variant in words, by its name."""
 
     @abstractmethod
     def plant(self) -> Plant:
@@ -54,15 +44,20 @@ class LoopSystem(System):
         only their ports are used, so weights may be blank.
         """
 
+    def bindings(self, variant: str) -> Mapping[str, str]:
+        """Return channel to source in a variant, where it is not the channel's first source."""
+        del variant
+        return {}
+
     @property
     def variants(self) -> Mapping[str, Variant]:
-        """The wirings, with their modules' readers and privileged sources."""
+        """The described variants, with their modules' readers and privileged sources."""
         return self._variants
 
     @cached_property
     def _variants(self) -> Mapping[str, Variant]:
         variants: dict[str, Variant] = {}
-        for name, wiring in self.wirings.items():
+        for name, description in self.descriptions.items():
             parts = self._graph(name, None)
             bound = {parts.bindings[port.channel] for part in parts.parts for port in part.ports}
             privileged = [
@@ -72,9 +67,9 @@ class LoopSystem(System):
             ]
             variants[name] = Variant(
                 name,
-                wiring.description,
+                description,
                 readers(parts.parts),
-                wiring.bindings,
+                self.bindings(name),
                 frozenset(privileged),
             )
         return variants
@@ -143,5 +138,5 @@ class LoopSystem(System):
         return outcomes
 
     def _graph(self, variant: str, seed: int | None) -> Graph:
-        bindings = self.wirings[variant].bindings
-        return graph(self.interface, self.plant(), self.modules(variant, seed), bindings)
+        modules, bindings = self.modules(variant, seed), self.bindings(variant)
+        return graph(self.interface, self.plant(), modules, bindings)

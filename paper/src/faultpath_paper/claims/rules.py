@@ -11,7 +11,13 @@ from typing import NamedTuple
 from faultpath.stats.contrast import Contrast
 from faultpath.stats.resamples import ROUNDING
 from faultpath_paper.answers import Answer
-from faultpath_paper.detection import detection, enough, least_detectable, significant_side
+from faultpath_paper.detection import (
+    Difference,
+    detection,
+    enough,
+    least_detectable,
+    significant_side,
+)
 
 POINT_SCENES = 50
 """Scenes from which on an estimate decides where the paper's own does: half of the paper's
@@ -91,8 +97,8 @@ def not_detected(sign: int | None = None) -> Rule:
         least = least_detectable(contrast)
         if least is None:
             return Judged("undecided", "no difference, however large, is sure to be significant")
-        if contrast.notable is not None and least > contrast.notable:
-            return Judged("undecided", "a difference of notable size could have been missed")
+        if isinstance(contrast, Difference) and least > contrast.telling:
+            return Judged("undecided", "a difference of a size that counts could have been missed")
         return CONFIRMED
 
     where = "different from" if sign is None else _SIDES[sign]

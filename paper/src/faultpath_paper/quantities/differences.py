@@ -3,6 +3,7 @@
 A crossing is the fault frequency from which on a repair pays, as the paper has it (Table V).
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TypeAlias
@@ -98,7 +99,7 @@ def combined(results: Results, *terms: tuple[float, Pair], effect: Effect = succ
     """Return a weighted sum of differences over common scenes, on shared resamples."""
     contrasts = together(results, *(pair for _, pair in terms), effect=effect)
     summed = weighted_sum([weight for weight, _ in terms], contrasts)
-    return decisive(summed, TELLING_PP if summed.unit == "pp" else None)
+    return decisive(summed, TELLING_PP if summed.unit == "pp" else math.inf)
 
 
 def together(results: Results, *pairs: Pair, effect: Effect = succeeded) -> tuple[Contrast, ...]:

@@ -7,15 +7,14 @@ from pathlib import PurePath
 
 import numpy as np
 
-from faultpath.analyses.analysis import Analysis, Round, Rounds
-from faultpath.analyses.compared import compared
+from faultpath.analyses.analysis import Analysis, Round, Rounds, rows_of, scenes_of, two_variants
+from faultpath.analyses.contrasts import compared
 from faultpath.analyses.facts import facts_of, question_of
-from faultpath.analyses.map.decide import decided
+from faultpath.analyses.map.decide import concluded
 from faultpath.analyses.map.lattice import COARSE, Point, lattice
 from faultpath.analyses.map.model import MapFacts, MapResult
 from faultpath.analyses.map.surface import Differences, next_points
 from faultpath.analyses.model import CORRECT
-from faultpath.analyses.planning import rows_of, scenes_of, two_variants
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed
 from faultpath.faults import Fault, FaultText, at_readers, describe, reaching
@@ -77,7 +76,7 @@ class MapAnalysis(Analysis[list[Point]]):
         """
         differences, unpaired = self.differences(sorted(items), trials)
         findings = (*Unpaired.first_of(unpaired), *deliveries.findings)
-        return decided(self.question, self.facts, differences, int(trials.failed.sum()), findings)
+        return concluded(self.question, self.facts, differences, int(trials.failed.sum()), findings)
 
     def condition(self, point: Point) -> str:
         """Return what rows of a point are called in the outcome table."""
@@ -88,8 +87,8 @@ class MapAnalysis(Analysis[list[Point]]):
         """Return the plan of all points. Variants that a fault cannot reach run once.
 
         Equal errors are one fault that is shared, as in an audit. Plans of one fault,
-        pair of modules, range, library and seeds have the same name, whatever spread or number of
-        points is asked for.
+        pair of modules, range, library and seeds have the same name, whatever the spread and the
+        number of points.
         """
         question, facts, rows = self.question, self.facts, list[Row]()
         for point in points:
@@ -120,9 +119,9 @@ class MapAnalysis(Analysis[list[Point]]):
         met different conditions; `UserError` where a point has no pair."""
         names = [self.condition(point) for point in points]
         comparison = compared(self.question.repair, self.question.baseline, names, trials)
-        if comparison.void:
+        if comparison.missing:
             raise UserError(
-                f"at the errors {' and '.join(comparison.void[:3])} no pair is left to compare, "
+                f"at the errors {' and '.join(comparison.missing[:3])} no pair is left to compare, "
                 "because trials failed there: fix what made them fail, or choose a smaller "
                 "--up-to."
             )

@@ -11,6 +11,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from faultpath.analyses.model import SHARED
 from faultpath.stats.inputs import Floats
 
 Point: TypeAlias = tuple[int, int]
@@ -20,8 +21,7 @@ UNITS = 32
 COARSE, FINE = 16, 4
 """Spacing of the first lattice, and the least that cells are cut to."""
 SHOWN = 2
-"""Spacing of the lattice on which the surface between the points is looked at."""
-SHARED = "shared"
+"""Spacing of the lattice on which the surface is shown."""
 
 
 def lattice(spacing: int) -> tuple[Point, ...]:
@@ -106,5 +106,5 @@ def _surface_weights(points: tuple[Point, ...]) -> Floats:
             take((x, y), [(x - step, y), (x + step, y), (x, y - step), (x, y + step)])
         step //= 2
     weights = np.stack([rows[place] for place in lattice(SHOWN)])
-    weights.setflags(write=False)  # shared by all who ask
+    weights.setflags(write=False)  # cached
     return weights

@@ -1,4 +1,4 @@
-"""The facts and the result of a map: what was run, and what is decided."""
+"""The facts and the result of a map."""
 
 from typing import Literal, Self
 
@@ -14,7 +14,7 @@ from faultpath.stats.estimate import Sign
 
 
 class MapFacts(Facts, allow_inf_nan=False):
-    """What a system and its library told of a map, with the defaults that follow."""
+    """Facts of a map, with the defaults that follow from system and library."""
 
     n_scenes: int
     modules: tuple[str, str]
@@ -46,7 +46,7 @@ class MapPoint(Result, allow_inf_nan=False):
     high: float
     """Ends of the interval that holds at all points at once."""
     sign: Sign
-    """The side that is decided, with the map's multiplicity."""
+    """The side that is significantly ahead, corrected for all points of the map."""
     won: int
     lost: int
     """Scenes that go to the repair and to the baseline, over the seeds."""
@@ -76,11 +76,12 @@ class Flip(Result, allow_inf_nan=False):
     """A module, or `shared`."""
     direction: Sign
     start: Sign
-    """Side decided under correct inputs."""
+    """Side significantly ahead under correct inputs."""
     turned: Sign
-    """Side decided between `first` and `last`: the other one, or either where `start` is 0."""
+    """Side significantly ahead from `first` to `last`: the other one, or either where `start` is
+    0."""
     until: float | None
-    """Largest error up to which what is decided under correct inputs stays decided."""
+    """Largest error up to which the side `start` stays significantly ahead."""
     estimate: float | None
     """Smallest error at which the interpolated estimate has the other sign than under correct
     inputs."""
@@ -99,7 +100,7 @@ class Expectation(Result, allow_inf_nan=False):
 
 
 class CorrelationRegion(Result, allow_inf_nan=False):
-    """Correlations at which it is decided who is ahead."""
+    """Correlations at which one side is significantly ahead."""
 
     low: float
     high: float
@@ -124,13 +125,13 @@ class JointErrors(Result, allow_inf_nan=False):
 
 
 class MapResult(Result, allow_inf_nan=False):
-    """The numbers of a map, decided; written as `map.json`."""
+    """Result of a map in numbers; written as `map.json`."""
 
     format: Literal[4] = 4
     question: MapQuestion
     facts: MapFacts
     scenes: int
-    """Compared: those without a void pair at any point."""
+    """Compared: those without a missing pair at any point."""
     invalid: Invalid | None = None
     """Why no result follows from these trials: then nothing is significant."""
     points: tuple[MapPoint, ...]
@@ -140,10 +141,10 @@ class MapResult(Result, allow_inf_nan=False):
     critical: float
     """Critical value of a standard normal that holds over the whole map."""
     failed: int
-    """Trials in which the program raised an error; each voids its scene at every point."""
+    """Trials in which the program raised an error; each leaves its scene out at every point."""
     findings: tuple[Finding, ...] = ()
-    """What was found in its trials."""
+    """Findings in its trials."""
 
     def winner(self, sign: int) -> str:
-        """Return the variant of a decided side."""
+        """Return the variant of a side."""
         return self.question.repair if sign > 0 else self.question.baseline

@@ -1,7 +1,7 @@
-"""Decisions on the map, with one critical value, and which points come next.
+"""Significance on the map, with one critical value, and which points come next.
 
-Everything looked at is a weighted sum of the differences that scenes show at the sampled points, so
-scenes stay the sample and all points of the map depend on each other as they do.
+Every number is a weighted sum of the differences that scenes show at the sampled points, so scenes
+stay the sample, and points of the map depend on each other as these differences do.
 """
 
 from collections.abc import Sequence
@@ -23,7 +23,7 @@ from faultpath.analyses.map.lattice import (
     rays,
     sizes,
 )
-from faultpath.stats.distributions import binomial_cdf, normal_p_value
+from faultpath.stats.distributions import binomial_cdf, normal_tails
 from faultpath.stats.estimate import Sign
 from faultpath.stats.inputs import Floats
 from faultpath.stats.power import MIN_SCENES
@@ -94,10 +94,10 @@ class Combined:
         return low + 0.0, high + 0.0
 
     def signs(self, z: float, tested: bool = True) -> Signs:
-        """Return `[spots]` the side of 0 that is decided, 0 for neither.
+        """Return `[spots]` the side of 0 that is significantly ahead, 0 for neither.
 
         The score test has to reject at `z`; where `tested` the sign test of the scenes at the same
-        level, and on the same side, as well. Fewer than `MIN_SCENES` decide nothing.
+        level, and on the same side, as well. With fewer than `MIN_SCENES` nothing is significant.
         """
         if self.values.shape[1] < MIN_SCENES:
             return np.zeros(len(self.values), dtype=np.int64)
@@ -107,7 +107,7 @@ class Combined:
             return signs
         first, second = (self.values > 0).sum(axis=1), (self.values < 0).sum(axis=1)
         p = 2.0 * binomial_cdf(np.minimum(first, second), first + second, 0.5)
-        return signs * (np.sign(first - second) * (p <= normal_p_value(z)) == signs)
+        return signs * (np.sign(first - second) * (p <= normal_tails(z)) == signs)
 
 
 def simultaneous(weights: Floats, differences: Differences, label: str) -> float:
@@ -118,15 +118,15 @@ def simultaneous(weights: Floats, differences: Differences, label: str) -> float
     """
     values = (weights @ differences.values).round(_DIGITS)
     spread = values.std(axis=1)
-    # Where fewer scenes differ nothing can be decided, and one scene more or less is a great step.
-    looked_at = (spread > ROUNDING) & ((values != 0.0).sum(axis=1) >= MIN_SCENES)
+    # Where fewer scenes differ nothing can be significant, and one scene makes a great step.
+    resampled = (spread > ROUNDING) & ((values != 0.0).sum(axis=1) >= MIN_SCENES)
     one = quantile(0.95)
-    if not looked_at.any():
+    if not resampled.any():
         return one
     n_scenes = values.shape[1]
     resamples = _resamples(label, n_scenes)
-    errors = spread[looked_at] * np.sqrt(n_scenes)
-    centred = values[looked_at] - values[looked_at].mean(axis=1, keepdims=True)
+    errors = spread[resampled] * np.sqrt(n_scenes)
+    centred = values[resampled] - values[resampled].mean(axis=1, keepdims=True)
     studentised = (centred / errors[:, np.newaxis]).T
     largest = [np.abs(block @ studentised).max(axis=1) for block in resamples.blocks()]
     return max(one, float(np.quantile(np.concatenate(largest), 0.95)))
@@ -142,13 +142,13 @@ def next_points(
 ) -> tuple[Point, ...]:
     """Return the points to add, none when the map is done: same data, same points.
 
-    First cells are cut in which the sign is not decided, the largest cells first, until there are
-    `limit` points or cells of the least size. Then, under each condition of the fault, the first
-    change of the estimate's sign is bisected down to one unit.
+    First cells are cut in which no side is significantly ahead, the largest cells first, until
+    there are `limit` points or cells of the least size. Then, under each condition of the fault,
+    the first change of the estimate's sign is bisected down to one unit.
     """
     every = np.eye(len(differences.points))
-    decided = Combined.of(every, differences).signs(simultaneous(every, differences, label))
-    signs = dict(zip(differences.points, decided.tolist(), strict=True))
+    significant = Combined.of(every, differences).signs(simultaneous(every, differences, label))
+    signs = dict(zip(differences.points, significant.tolist(), strict=True))
     means = dict(zip(differences.points, differences.values.mean(axis=1).tolist(), strict=True))
 
     def urgency(cell: Point) -> tuple[bool, float, Point]:

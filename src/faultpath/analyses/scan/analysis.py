@@ -5,11 +5,10 @@ from dataclasses import dataclass, field, replace
 from itertools import combinations
 from pathlib import PurePath
 
-from faultpath.analyses.analysis import Analysis, Round, Rounds
+from faultpath.analyses.analysis import Analysis, Round, Rounds, rows_of, scenes_of
 from faultpath.analyses.facts import facts_of, question_of
 from faultpath.analyses.model import CORRECT
-from faultpath.analyses.planning import rows_of, scenes_of
-from faultpath.analyses.scan.decide import concluded, going_on, hurting, losses
+from faultpath.analyses.scan.decide import concluded, first_stages, going_on, hurting
 from faultpath.analyses.scan.errors import (
     Scanned,
     by_source,
@@ -38,11 +37,11 @@ from faultpath.system.system import System
 FIRST_SCENES = 50
 """Scenes of the first stage."""
 TRIALS = 8000
-"""That a scan runs where nobody says in how many scenes; at least as many as it needs."""
+"""Trials of a scan without a number of scenes; more where it needs more."""
 COSTLY_PP = 50.0
 """An error that costs more is halved: where all fail, no error can be compared."""
 HALVINGS = 3
-"""An error is halved so often at most."""
+"""Most halvings of an error."""
 
 
 @dataclass(frozen=True)
@@ -134,8 +133,8 @@ class ScanAnalysis(Analysis[Scanned]):
         """Return the sources and signs of which an error costs too much in some variant."""
         return {
             (error.source, error.sign)
-            for lost in losses(self.question, errors, trials, self.first)
-            for error, loss in zip(errors, lost, strict=True)
+            for stage in first_stages(self.question, errors, trials, self.first)
+            for error, loss in zip(errors, stage.losses.tolist(), strict=True)
             if loss > COSTLY_PP
         }
 
@@ -291,7 +290,6 @@ def _variants(system: System, request: ScanQuestion) -> tuple[Variant, ...]:
 
 
 def _nothing_sized(system: System, every: Sequence[Candidate]) -> UserError:
-    """Return the error of a system of which no source has a size."""
     if not every:
         return UserError(f"{system.name}: no version reads a source that may err: nothing to scan.")
     why = "; ".join(f"{candidate.name} {candidate.unsized}" for candidate in every)

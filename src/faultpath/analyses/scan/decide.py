@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 
@@ -25,7 +25,7 @@ from faultpath.run.findings import Unpaired
 from faultpath.run.pairing import Group, pair
 from faultpath.run.question import ScanQuestion
 from faultpath.run.trials import Trials
-from faultpath.stats.cancelling import LEVEL, MOST, Pair, StageOne, cancelling, stage_one
+from faultpath.stats.cancelling import LEVEL, MOST, StageOne, cancelling, stage_one
 from faultpath.stats.inputs import Floats
 
 Successes: TypeAlias = Mapping[str, Floats]
@@ -33,19 +33,12 @@ Successes: TypeAlias = Mapping[str, Floats]
 has no outcome."""
 
 
-def losses(
-    question: ScanQuestion, errors: Sequence[ScanError], trials: Trials, scenes: Sequence[str]
-) -> list[list[float]]:
-    """Return what each error cost in the first stage, percentage points, by variant."""
-    return [stage.losses.tolist() for stage in _stages(question, errors, trials, scenes)]
-
-
 def going_on(
     question: ScanQuestion, errors: Sequence[ScanError], trials: Trials, scenes: Sequence[str]
 ) -> tuple[int, ...]:
     """Return the errors that hurt in a variant and go on, the worst first."""
     worst: dict[int, float] = {}
-    for stage in _stages(question, errors, trials, scenes):
+    for stage in first_stages(question, errors, trials, scenes):
         for error in stage.hurting:
             worst[error] = max(float(stage.losses[error]), worst.get(error, 0.0))
     return tuple(sorted(worst, key=lambda error: (-worst[error], error))[:MOST])
@@ -57,15 +50,16 @@ def hurting(
     """Return the sources and signs of which an error is seen to cost success in some variant."""
     return {
         (error.source, error.sign)
-        for stage in _stages(question, errors, trials, scenes)
+        for stage in first_stages(question, errors, trials, scenes)
         for error, p_value in zip(errors, stage.p_values.tolist(), strict=True)
         if p_value < LEVEL
     }
 
 
-def _stages(
+def first_stages(
     question: ScanQuestion, errors: Sequence[ScanError], trials: Trials, scenes: Sequence[str]
 ) -> Iterable[StageOne]:
+    """Yield how the errors did alone in the first stage, by variant."""
     for variant in question.variants:
         success, _ = successes(trials, variant, [label([error]) for error in errors], scenes)
         yield stage_one(success[CORRECT], np.stack([success[label([e])] for e in errors]))
@@ -105,10 +99,7 @@ def concluded(
     trials: Trials,
     deliveries: Deliveries,
 ) -> ScanResult:
-    """Return the result of a scan.
-
-    Raises `UserError` where no trial of a condition is left.
-    """
+    """Return the result of a scan; `UserError` where no trial of a condition is left."""
     unpaired: list[Unpaired] = []
     versions = [_version(name, scanned, trials, unpaired) for name in question.variants]
     findings = (*Unpaired.first_of(unpaired), *deliveries.findings)
@@ -175,7 +166,7 @@ def _first_stage(
     none = success[CORRECT]
     alone = [success[label([error])] for error in tried]
     stage = stage_one(none, np.stack(alone))
-    tested = cancelling(none, np.stack(alone), {}, set()).singles
+    tested = cancelling(none, dict(enumerate(alone)), {}, set()).singles
     return tuple(
         FirstStage(
             error=error,
@@ -196,30 +187,17 @@ def _second_stage(
     """Return what the errors did alone and in pairs, by the decisions of a scan."""
     if not scanned.singles:
         return (), ()
-    at = {error: place for place, error in enumerate(scanned.singles)}
-    keys = {(at[a], at[b]): (a, b) for a, b in scanned.pairs}
-    sources = [scanned.errors[error].source for error in scanned.singles]
+    source = [error.source for error in scanned.errors]
     result = cancelling(
         success[()],
-        np.stack([success[error,] for error in scanned.singles]),
-        {key: success[errors] for key, errors in keys.items()},
-        {key for key in keys if sources[key[0]] == sources[key[1]]},
+        {error: success[error,] for error in scanned.singles},
+        {errors: success[errors] for errors in scanned.pairs},
+        {(a, b) for a, b in scanned.pairs if source[a] == source[b]},
     )
-    singles = tuple(
-        SecondStage(error=error, **single._asdict())
-        for error, single in zip(scanned.singles, result.singles, strict=True)
+    return (
+        tuple(SecondStage(error=at, **single._asdict()) for at, single in result.singles.items()),
+        tuple(ScannedPair(errors=at, **pair._asdict()) for at, pair in result.pairs.items()),
     )
-    pairs = tuple(
-        _in_errors(errors, scanned.singles, result.pairs[key]) for key, errors in keys.items()
-    )
-    return singles, pairs
-
-
-def _in_errors(errors: tuple[int, int], singles: Sequence[int], pair: Pair) -> ScannedPair:
-    numbers: dict[str, Any] = pair._asdict()
-    numbers["worse"] = singles[pair.worse]
-    numbers["covering"] = None if pair.covering is None else singles[pair.covering]
-    return ScannedPair(errors=errors, **numbers)
 
 
 def _together(
@@ -240,7 +218,7 @@ def _together(
 
 
 def _without_claims(version: ScannedVersion) -> ScannedVersion:
-    """Return the numbers of trials from which nothing follows."""
+    """Return the numbers of a version without the kinds that would follow from them."""
     none = {"kind": None, "covering": None}
     return version.model_copy(
         update={

@@ -42,7 +42,7 @@ class Scanned(NamedTuple):
 
 def errors_of(system: System, candidates: Iterable[Candidate]) -> tuple[ScanError, ...]:
     """Return the error of every source that has a size, at each module that reads it, in both
-    signs; they stand in the order of their names, so that of the declaration decides nothing.
+    signs; they stand in the order of their names, whatever that of the declaration.
 
     A preset of which the system refuses the opposite sign has one.
     """

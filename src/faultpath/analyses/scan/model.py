@@ -14,7 +14,7 @@ from faultpath.stats.estimate import Sign
 
 
 class ScanFacts(Facts):
-    """What a system and its library told of a scan."""
+    """Facts of a scan."""
 
     other: str = ""
     """The only other variant of the system; empty where there are none or several."""
@@ -31,7 +31,7 @@ class ScanError(Result, allow_inf_nan=False):
     fault: str
     """With its size, without readers."""
     sign: Sign
-    """That of the first number of its change that is not 0."""
+    """Sign of the first number of its change that is not 0."""
     change: Annotated[tuple[float, ...], Field(min_length=1)]
     """Added to the reading, or fractions of it where `relative`; one number, or a vector."""
     relative: bool
@@ -151,14 +151,14 @@ class ScanResult(Result):
     failed: int
     """Trials in which the program raised an error."""
     findings: tuple[Finding, ...] = ()
-    """What was found in its trials."""
+    """Findings in its trials."""
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
         known = frozenset(range(len(self.errors)))
         texts = {error.text for error in self.errors}
         for version in self.versions:
-            together = {place for of in version.together for place in of.errors}
+            together = {place for source in version.together for place in source.errors}
             paired = {place for pair in version.pairs for place in pair.errors}
             alone = {single.error for single in version.singles}
             if not {*self.chosen, *together, *alone} <= known or not paired <= alone:
@@ -169,8 +169,9 @@ class ScanResult(Result):
                 raise ValueError("has a pair of one error")
         if tuple(version.variant for version in self.versions) != self.question.variants:
             raise ValueError("has other versions than its question")
-        if len({tuple(of.errors for of in version.together) for version in self.versions}) > 1:
+        conditions = {tuple(s.errors for s in version.together) for version in self.versions}
+        if len(conditions) > 1:
             raise ValueError("has other conditions in one version than in the other")
-        if not all(of.errors for of in self.versions[0].together):
+        if not all(source.errors for source in self.versions[0].together):
             raise ValueError("has a source that is wrong nowhere")
         return self

@@ -32,7 +32,7 @@ class Candidate(Frozen, allow_inf_nan=False):
     """Why there is no fault."""
     note: str = ""
     response: float | None = None
-    """How far a probe moves the commands, see `probing`: the largest of all variants, modules alone
+    """How far a probe moves the commands, see `ranking`: the largest of all variants, modules alone
     and all of them. Errors of several modules may cancel, and that is no reason to rank their
     source last."""
     rank: int | None = None

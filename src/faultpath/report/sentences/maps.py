@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from faultpath.analyses.map.lattice import SHARED
 from faultpath.analyses.map.model import Flip, MapFacts, MapPoint, MapResult
+from faultpath.analyses.model import SHARED
 from faultpath.core.text import series
 from faultpath.report.sentences.phrases import NO_RESULT, scenes_like_these
 from faultpath.report.sentences.wording import MINUS, interval, signed
