@@ -49,7 +49,8 @@ def compared(repair: str, baseline: str, conditions: Iterable[str], trials: Tria
     left = [condition for condition, ends in success.items() if paired_scenes(*ends).any()]
     if not left:
         row, error = next(iter(trials.errors.items()))
-        variant, condition, _, scene = trials.places[row]
+        place: list[int] = trials.places[row].tolist()
+        variant, condition, _, scene = place
         raise UserError(
             "no scene is left to compare, because in each of them a trial failed, such as that of "
             f"{trials.variants[variant]} in {trials.scenes[scene].id} "

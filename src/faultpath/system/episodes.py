@@ -212,10 +212,10 @@ class EpisodePlant(Plant):
             return None
         drawings = [self._render(world.view()) for world in worlds]
         try:
-            lines = np.array(drawings, dtype=float)
+            lines: HostArray = np.array(drawings, dtype=float)
         except (TypeError, ValueError):
             lines = np.empty(0)
-        if lines.ndim != 3 or lines.shape[2] != 2:
+        if lines.shape[2:] != (2,):
             raise mistake_in(
                 self._render,
                 "`render` must return points (x, y) in metres, as many at each step; it returned "
