@@ -122,8 +122,8 @@ def test_a_failed_trial_is_shown_and_the_status_says_so():
         ended = audit(system=system, set="where=cart/003", out="run")
         assert ended.status == 1
         assert "Traceback" not in ended.out + ended.err
-        assert re.search(r"cart/003 .*ZeroDivisionError: the \[cart\] has no wheels", ended.out)
-        (place,) = set(re.findall(r"\((\S+failures\S+\.txt)\)", ended.out)[:1])
+        assert re.search(r"cart/003 .*ZeroDivisionError: the \[cart\] has no wheels", ended.err)
+        (place,) = set(re.findall(r"\((\S+failures\S+\.txt)\)", ended.err)[:1])
         assert "has no wheels" in Path(place).read_text()
     effect = open_run("run").record.effects[0]
     assert (effect.void, effect.scenes) == (1, 5)
