@@ -82,8 +82,8 @@ def audit(
     typer.echo(f"Building {one_line(system)}, to compare {variants}.", err=as_json)
 
     from faultpath.api.audit import audits
-    from faultpath.api.comparing import compare
     from faultpath.api.display import SafeConsole
+    from faultpath.api.runs import compare
     from faultpath.report.comparison import shown
 
     runs = audits(system, **arguments, progress=display(as_json))
@@ -179,6 +179,10 @@ def report(
 ) -> None:
     """Write the pages of a finished run again, or compare several audits; runs no code from any
     of them."""
+    from faultpath.api.display import SafeConsole
+    from faultpath.api.runs import compare, open_run
+    from faultpath.report.comparison import shown
+
     if len(folders) == 1:
         if out is not None:
             raise UserError(
@@ -186,15 +190,9 @@ def report(
             )
         if as_json:
             raise UserError("--json prints a comparison: the result of one run is its record.json.")
-        from faultpath.api.runs import open_run
-
         for written in open_run(folders[0]).report():
             typer.echo(written)
         return
-
-    from faultpath.api.comparing import compare
-    from faultpath.api.display import SafeConsole
-    from faultpath.report.comparison import shown
 
     compared = compare(folders)
     page = None if out is None else compared.report(out)
@@ -209,8 +207,8 @@ def report(
 
 def _print(runs: "Sequence[Run]", as_json: bool, gate: Gate, sentences: bool, details: bool) -> int:
     """Print what was decided in each run, and its folder and record as JSON; return the status."""
-    from faultpath.api.comparing import compare, in_json
     from faultpath.api.display import SafeConsole
+    from faultpath.api.runs import compare, in_json
     from faultpath.report.terminal import decision
 
     if as_json:
@@ -229,8 +227,8 @@ def _print(runs: "Sequence[Run]", as_json: bool, gate: Gate, sentences: bool, de
 
 def _print_conclusion(run: "MapRun | ScanRun", tables: "Sequence[Table]", as_json: bool) -> int:
     """Print what a map or a scan found, or that as JSON; return the exit status."""
-    from faultpath.api.comparing import in_json
     from faultpath.api.display import SafeConsole
+    from faultpath.api.runs import in_json
     from faultpath.report.terminal import conclusion
 
     if as_json:
