@@ -13,10 +13,9 @@ from faultpath.core import __version__
 from faultpath.core.lazy import load
 
 if TYPE_CHECKING:
-    from faultpath.api.audit import audit
+    from faultpath.api.audit import audit, map, scan
     from faultpath.api.checks import check
     from faultpath.api.judging import judge
-    from faultpath.api.rounds import map, scan
     from faultpath.api.runs import Run, compare, open_run
     from faultpath.api.systems import load_system
     from faultpath.core.errors import UserError
@@ -49,9 +48,9 @@ _HOMES = {
     "generator": "faultpath.core.streams",
     "judge": "faultpath.api.judging",
     "load_system": "faultpath.api.systems",
-    "map": "faultpath.api.rounds",
+    "map": "faultpath.api.audit",
     "open_run": "faultpath.api.runs",
-    "scan": "faultpath.api.rounds",
+    "scan": "faultpath.api.audit",
 }
 
 

@@ -133,7 +133,7 @@ def judge(
 def reversal_map(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     """Map the success difference over the error at one module and that at another: where repair
     or baseline is ahead, from which correlation of the errors on, and which error reverses that."""
-    from faultpath.api.rounds import map
+    from faultpath.api.audit import map
     from faultpath.report.map import tables
 
     run = map(system, **arguments, progress=display(as_json))
@@ -145,8 +145,8 @@ def scan(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     """Find which errors of a system's inputs cancel: each alone costs success, and both together
     less than either, so that correcting one of them alone does not help."""
     from faultpath.analyses.scan.sources import Ranking
+    from faultpath.api.audit import scan
     from faultpath.api.display import SafeConsole
-    from faultpath.api.rounds import scan
     from faultpath.report.scan import ranking_table, tables
     from faultpath.report.tables.terminal import Parted
 
