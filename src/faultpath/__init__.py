@@ -13,12 +13,10 @@ from faultpath.core import __version__
 from faultpath.core.lazy import load
 
 if TYPE_CHECKING:
-    from faultpath.api.audit import audit
+    from faultpath.api.audit import audit, map, scan
     from faultpath.api.checks import check
-    from faultpath.api.comparing import compare
     from faultpath.api.judging import judge
-    from faultpath.api.rounds import map, scan
-    from faultpath.api.runs import Run, open_run
+    from faultpath.api.runs import Run, compare, open_run
     from faultpath.api.systems import load_system
     from faultpath.core.errors import UserError
     from faultpath.core.streams import generator
@@ -46,13 +44,13 @@ _HOMES = {
     "UserError": "faultpath.core.errors",
     "audit": "faultpath.api.audit",
     "check": "faultpath.api.checks",
-    "compare": "faultpath.api.comparing",
+    "compare": "faultpath.api.runs",
     "generator": "faultpath.core.streams",
     "judge": "faultpath.api.judging",
     "load_system": "faultpath.api.systems",
-    "map": "faultpath.api.rounds",
+    "map": "faultpath.api.audit",
     "open_run": "faultpath.api.runs",
-    "scan": "faultpath.api.rounds",
+    "scan": "faultpath.api.audit",
 }
 
 

@@ -1,4 +1,4 @@
-"""`faultpath.audit`: run the treatments of one question, decide, and write the run folder."""
+"""`faultpath.audit`, `map` and `scan`: run the trials of a question, conclude, write the folder."""
 
 import os
 from collections.abc import Sequence
@@ -6,11 +6,15 @@ from contextlib import suppress
 from functools import partial
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
+from faultpath.analyses.analysis import Analysis
 from faultpath.analyses.audit import AuditAnalysis, audit_analysis
 from faultpath.analyses.decide import with_earlier_analyses
+from faultpath.analyses.map.analysis import map_analysis
 from faultpath.analyses.model import AuditResult
+from faultpath.analyses.scan.analysis import ranked_sources, scan_analysis
+from faultpath.analyses.scan.sources import Ranking
 from faultpath.api.display import Display
 from faultpath.api.folders import (
     MADE_FROM,
@@ -20,9 +24,9 @@ from faultpath.api.folders import (
     parsed,
     read_provenance,
 )
-from faultpath.api.job import Job, run, with_question_signature
+from faultpath.api.job import Job, begin, run, with_question_signature
 from faultpath.api.replaying import Replayed, outcomes_at, run_again, shown_first
-from faultpath.api.runs import Run
+from faultpath.api.runs import MapRun, Run, ScanRun
 from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import write_file, write_text
 from faultpath.core.files.parquet import Unreadable
@@ -33,7 +37,7 @@ from faultpath.report.sentences.findings import describe
 from faultpath.run.execution.runner import RunResult
 from faultpath.run.findings import Finding, Unrecorded, Unrepeated
 from faultpath.run.provenance import seal
-from faultpath.run.question import AuditCall
+from faultpath.run.question import AuditCall, MapCall, ScanCall
 from faultpath.run.shown import system_shown
 from faultpath.run.store.folder import OUTCOMES, read_regular
 from faultpath.run.store.signals import (
@@ -46,6 +50,8 @@ from faultpath.run.store.signals import (
 from faultpath.run.store.tables import TrialAddress
 from faultpath.run.work.executor import Progress
 from faultpath.system.system import System
+
+_Finished = TypeVar("_Finished", MapRun, ScanRun)
 
 _SCENES_FOR_ONE = 20
 """So many scenes of an audit, and one more is recorded: at most about a twentieth more trials."""
@@ -109,6 +115,59 @@ def audits(
             audit(system, progress=progress, **{**arguments, "fault": sized, "folder": place})
         )
     return tuple(runs)
+
+
+@with_question_signature(MapCall)
+def map(
+    system: str | PathLike[str] | System, *, progress: bool | Display = True, **arguments: Any
+) -> MapRun:
+    """Map who is ahead over the error at one module and that at another, of the same source.
+
+    Args:
+        system: As for `audit`.
+        progress: As for `audit`.
+        **arguments: ...
+
+    The same folder serves another spread or number of points, and keeps what was run.
+
+    Raises:
+        UserError: What was asked cannot be done; the sentence says why, and what to do.
+        Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
+    """
+    finish = partial(_finished, MapRun)
+    return run("map", MapCall, map_analysis, finish, system, arguments, progress)
+
+
+@with_question_signature(ScanCall)
+def scan(
+    system: str | PathLike[str] | System, *, progress: bool | Display = True, **arguments: Any
+) -> ScanRun | Ranking:
+    """Find which errors of a system's inputs cancel: each alone costs more than both together.
+
+    Args:
+        system: As for `audit`.
+        progress: As for `audit`.
+        **arguments: ...
+
+    Without `trials` it returns the sources that may err, ranked, and runs no trial.
+
+    Raises:
+        UserError: What was asked cannot be done; the sentence says why, and what to do.
+        Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
+    """
+    if not arguments.get("trials", True):
+        question, chosen, library, _ = begin("scan", ScanCall, system, arguments, progress)
+        return ranked_sources(chosen.system, question, library)
+    finish = partial(_finished, ScanRun)
+    return run("scan", ScanCall, scan_analysis, finish, system, arguments, progress)
+
+
+def _finished(kind: type[_Finished], analysis: Analysis[Any], job: Job) -> _Finished:
+    """Run the rounds of an analysis, conclude, and write its result."""
+    items, result = job.trials(analysis)
+    record = analysis.conclude(result.trials, result.deliveries, items)
+    write_text(job.folder / kind.files[0], as_text(record), job.folder)
+    return kind(job.folder, record, job.finish(result, analysis.system, kind.files))
 
 
 def carry_out(audit: AuditAnalysis, job: Job, signals: bool = True) -> Run:

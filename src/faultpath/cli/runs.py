@@ -83,8 +83,8 @@ def audit(
         typer.echo(f"Building {one_line(system)}, to compare {variants}.", err=True)
 
     from faultpath.api.audit import audits
-    from faultpath.api.comparing import compare
     from faultpath.api.display import SafeConsole
+    from faultpath.api.runs import compare
     from faultpath.report.comparison import shown
 
     runs = audits(system, **arguments, progress=display())
@@ -134,7 +134,7 @@ def judge(
 def reversal_map(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     """Map the success difference over the error at one module and that at another: where repair
     or baseline is ahead, from which correlation of the errors on, and which error reverses that."""
-    from faultpath.api.rounds import map
+    from faultpath.api.audit import map
     from faultpath.report.map import tables
 
     run = map(system, **arguments, progress=display())
@@ -146,8 +146,8 @@ def scan(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     """Find which errors of a system's inputs cancel: each alone costs success, and both together
     less than either, so that correcting one of them alone does not help."""
     from faultpath.analyses.scan.sources import Ranking
+    from faultpath.api.audit import scan
     from faultpath.api.display import SafeConsole
-    from faultpath.api.rounds import scan
     from faultpath.report.scan import ranking_table, tables
     from faultpath.report.terminal import Parted
 
@@ -180,6 +180,10 @@ def report(
 ) -> None:
     """Write the pages of a finished run again, or compare several audits; runs no code from any
     of them."""
+    from faultpath.api.display import SafeConsole
+    from faultpath.api.runs import compare, open_run
+    from faultpath.report.comparison import shown
+
     if len(folders) == 1:
         if out is not None:
             raise UserError(
@@ -187,15 +191,9 @@ def report(
             )
         if as_json:
             raise UserError("--json prints a comparison: the result of one run is its record.json.")
-        from faultpath.api.runs import open_run
-
         for written in open_run(folders[0]).report():
             typer.echo(written)
         return
-
-    from faultpath.api.comparing import compare
-    from faultpath.api.display import SafeConsole
-    from faultpath.report.comparison import shown
 
     compared = compare(folders)
     page = None if out is None else compared.report(out)
@@ -210,8 +208,8 @@ def report(
 
 def _print(runs: "Sequence[Run]", as_json: bool, gate: Gate, sentences: bool, details: bool) -> int:
     """Print what was decided in each run, and its folder and record as JSON; return the status."""
-    from faultpath.api.comparing import compare, in_json
     from faultpath.api.display import SafeConsole
+    from faultpath.api.runs import compare, in_json
     from faultpath.report.terminal import decision
 
     if as_json:
@@ -230,8 +228,8 @@ def _print(runs: "Sequence[Run]", as_json: bool, gate: Gate, sentences: bool, de
 
 def _print_conclusion(run: "MapRun | ScanRun", tables: "Sequence[Table]", as_json: bool) -> int:
     """Print what a map or a scan found, or that as JSON; return the exit status."""
-    from faultpath.api.comparing import in_json
     from faultpath.api.display import SafeConsole
+    from faultpath.api.runs import in_json
     from faultpath.report.terminal import conclusion
 
     if as_json:
