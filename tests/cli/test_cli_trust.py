@@ -50,7 +50,7 @@ def test_a_function_that_builds_nothing_is_called_for_no_file(trust) -> None:
     renamed(system="os:system", options={"command": "touch ran"})
     ended = faultpath("replay", "run", *trust)
     assert ended.status == 2
-    assert "os:system" in ended.err
+    assert "os" in ended.err
     assert ("nothing else is called" if trust else "give --trust") in ended.err
     assert not Path("ran").exists()
     assert not Path("runs").exists()
