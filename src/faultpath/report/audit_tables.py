@@ -53,15 +53,16 @@ def _quantities(
         "scenes": ("Scenes", [str(e.scenes) for e in effects]),
         "void": ("Void pairs", list(map(_missing_pairs, effects))),
         "break-even": ("Break-even, %", _break_evens(result, result.break_even)),
+        "mcnemar": ("p, exact McNemar", [_p(e.mcnemar_p) for e in effects]),
+        "power": ("80 % power, pp", [wording.detectable(e) for e in effects]),
+        "beta": ("Break-even beta, %", _break_evens(result, result.break_even_beta)),
     }
-    if any(effect.mcnemar_p is not None for effect in effects):
-        quantities["mcnemar"] = ("p, exact McNemar", [_p(e.mcnemar_p) for e in effects])
-    if result.stopped is None:
-        quantities["power"] = ("80 % power, pp", [wording.detectable(e) for e in effects])
-    if result.break_even_beta:
-        betas = _break_evens(result, result.break_even_beta)
-        quantities["beta"] = ("Break-even beta, %", betas)
-    return {name: quantities[name] for name in names if name in quantities}
+    there = {
+        "mcnemar": any(effect.mcnemar_p is not None for effect in effects),
+        "power": result.stopped is None,
+        "beta": bool(result.break_even_beta),
+    }
+    return {name: quantities[name] for name in names if there.get(name, True)}
 
 
 def _difference(effect: Effect) -> Entry:
