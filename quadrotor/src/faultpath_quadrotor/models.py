@@ -132,8 +132,9 @@ def estimator(name: str, fixes: Fixes = Fixes.OPTICAL, device: torch.device = CP
 
 
 def _trained(model: Model, name: str, seed: int | None) -> Model:
-    learned = AnchoredPredictor | UnanchoredPredictor | RecurrentReconstruction
-    if seed is not None and isinstance(model, learned):
+    if seed is not None and isinstance(
+        model, AnchoredPredictor | UnanchoredPredictor | RecurrentReconstruction
+    ):
         _fill(model.network, name, seed)
     return model
 
