@@ -28,7 +28,7 @@ from faultpath_quadrotor.scenes.geometry import Geometry
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.scenes.scene import Scene
 from faultpath_quadrotor.state import State
-from faultpath_quadrotor.training.catalogue import CLEARANCE_POOL
+from faultpath_quadrotor.training import CLEARANCE_POOL
 from faultpath_quadrotor.training.fitting import ModelTask
 from faultpath_quadrotor.training.pool import (
     PoolPart,
