@@ -6,6 +6,7 @@ from itertools import product
 
 import numpy as np
 from faultpath_quadrotor.scenes.field import Lattice, exact_on_lattice
+from faultpath_quadrotor.scenes.library import CELL_M
 from faultpath_quadrotor.scenes.scene import Point, Scene
 from faultpath_quadrotor.vehicle import COLLISION_RADIUS_M
 from numpy.typing import NDArray
@@ -58,7 +59,7 @@ class FreeLattice:
             both = self.free[here] & self.free[there]
             tails.append(number[here][both])
             heads.append(number[there][both])
-            lengths.append(np.full(both.sum(), np.linalg.norm(step) * self.lattice.spacing_m))
+            lengths.append(np.full(both.sum(), np.linalg.norm(step) * CELL_M))
         size = int(self.free.sum())
         pair = (np.concatenate(tails), np.concatenate(heads))
         return csr_array((np.concatenate(lengths), pair), shape=(size, size))

@@ -229,12 +229,8 @@ def measure(
 ) -> EvidenceTable:
     """Record and measure what the folder lacks, and return all of `measurements`.
 
-    Args:
-        measurements: Measurements to make; duplicates are made once.
-        scenes: The first N scenes of each library; `None`: all.
-        folder: Folder of recordings and measurements, from which the next call resumes.
-        workers: Worker processes; 0 for this process alone.
-        progress: Called with how much is done, of how much.
+    `scenes` is how many of each library's count, `None` for all; `workers` is how many processes
+    there are, 0 for this one alone. The next call goes on from the folder.
     """
     unique = tuple(dict.fromkeys(measurements))
     recordings = dict.fromkeys(measurement.recording for measurement in unique)

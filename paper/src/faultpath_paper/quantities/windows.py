@@ -19,11 +19,8 @@ class WindowQuantiles:
     """Quantiles over the windows of some scenes, all on the same resamples of these scenes.
 
     Windows of a scene share its trial and disturbances, so they are not independent: a resample
-    takes or leaves a scene with all its windows. The scenes themselves name the resamples' stream.
-
-    Args:
-        scenes: Scene of each window, [windows].
-        n_resamples: How many.
+    takes or leaves a scene with all its windows. The scenes themselves, one for each window, name
+    the stream of the resamples.
     """
 
     def __init__(self, scenes: Sequence[str], n_resamples: int = 10_000) -> None:

@@ -81,10 +81,7 @@ def with_estimators(
 
 class ExactEstimator(Estimator):
     """Estimates without error (the paper's): the one module that takes the plant's truth past all
-    taps.
-
-    Args:
-        besides: Sources that another estimator writes.
+    taps. It leaves out the sources `besides`, which another estimator writes.
     """
 
     truths = ("vehicle",)

@@ -74,15 +74,10 @@ def rays() -> Tensor:
 
 @dataclass(frozen=True)
 class CaptureFrame(Batched):
-    """Where the camera was when the image was taken; S scenes.
+    """Where the camera was when the image was taken; S scenes."""
 
-    Attributes:
-        position: World frame, m, `[3, S]`.
-        rotation: Camera to world, `[3, 3, S]`.
-    """
-
-    position: Tensor
-    rotation: Tensor
+    position: Tensor  # world frame, m, `[3, S]`
+    rotation: Tensor  # camera to world, `[3, 3, S]`
 
     def from_world(self, points: Tensor) -> Tensor:
         """Return world points `[3, S, N]` in the capture frame, m."""

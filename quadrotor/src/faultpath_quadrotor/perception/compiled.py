@@ -133,14 +133,11 @@ class CompiledRenderer:
     """Draws the depth images of a block of scenes."""
 
     def __init__(self, kernels: Kernels, solids: Tensor, planes: Tensor) -> None:
-        """Prepare the solids of B scenes.
+        """Prepare the solids of B scenes, K prisms each, the arena first.
 
-        Args:
-            kernels: What draws.
-            solids: K prisms a scene, the arena first, `[12, K, B]`: cosine and sine of the yaw, the
-                centre along the prism's axes, half extents, rounding, sign, and from which to which
-                height above its centre it can be seen; m, float64.
-            planes: Inward normals of the view and their offsets, `[6, 4]`, float64.
+        `solids` `[12, K, B]` are cosine and sine of the yaw, the centre along the prism's axes,
+        half extents, rounding, sign, and from which to which height above its centre a prism can be
+        seen; `planes` `[6, 4]` inward normals of the view and their offsets; m, float64.
         """
         self._kernels = kernels
         _, count, scenes = solids.shape

@@ -32,14 +32,10 @@ _RAYS = rays().numpy()
 
 
 def visible_distance(depth: Tensor, points: Tensor) -> Tensor:
-    """Return the visible-space signed distance.
+    """Return the visible-space signed distance, `[N]`, m, float64, in [-0.3, 1].
 
-    Args:
-        depth: One image, z-depth `[36, 64]`, m.
-        points: In the capture frame, `[3, N]`, m.
-
-    Returns:
-        `[N]`, m, float64, in [-0.3, 1]; negative behind a visible surface or a frontier.
+    It is negative behind a visible surface or a frontier. `depth` is one image, z-depth `[36, 64]`,
+    m; `points` are in the capture frame, `[3, N]`, m.
     """
     z = np.maximum(depth.double().numpy(), _NEAREST_DEPTH_M)
     at = points.double().numpy()

@@ -50,21 +50,13 @@ _OFFSETS = torch.tensor([0.0, RANGE_M, 0.0, 0.0, 0.0, 0.0], dtype=torch.float64)
 
 @dataclass(frozen=True)
 class _View(Batched):
-    """The solids as the cameras see them; K prisms, L scenes, float64.
+    """The solids as the cameras see them; K prisms, L scenes, float64."""
 
-    Attributes:
-        eye: The camera in the axes of each prism, from its centre, `[3, K, L]`, m.
-        axes: The camera's axes in the axes of each prism, `[3 prism, 3 camera, K, L]`.
-        half: Half extents, `[3, K, L]`, m.
-        rounding: Rounding radii, `[K, L]`, m.
-        seen: Whether any of a solid may be in the image, `[K, L]`.
-    """
-
-    eye: Tensor
-    axes: Tensor
-    half: Tensor
-    rounding: Tensor
-    seen: Tensor
+    eye: Tensor  # the camera in the axes of each prism, from its centre, `[3, K, L]`, m
+    axes: Tensor  # the camera's axes in the axes of each prism, `[3 prism, 3 camera, K, L]`
+    half: Tensor  # half extents, `[3, K, L]`, m
+    rounding: Tensor  # rounding radii, `[K, L]`, m
+    seen: Tensor  # whether any of a solid may be in the image, `[K, L]`
 
     def numbers(self) -> Tensor:
         """Return eye, axes, half extents and rounding as one table, `[16, K, L]`."""

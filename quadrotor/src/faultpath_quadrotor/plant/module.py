@@ -10,8 +10,8 @@ import torch
 from torch import Tensor
 from typing_extensions import override
 
-from faultpath import loop
 from faultpath.loop import Batch, Inputs, Outputs, Port, Progress, Query
+from faultpath.loop import Plant as LoopPlant
 from faultpath.system import VEHICLE
 from faultpath_quadrotor.batching import lanes_last, scenes_first
 from faultpath_quadrotor.device import CPU, host_readable
@@ -143,7 +143,7 @@ class Flying:
     """Errors of the raw sensors."""
 
 
-class VehiclePlant(loop.Plant):
+class VehiclePlant(LoopPlant):
     """Vehicles, wind and geometry, with a camera or with the clearance of the geometry itself.
 
     Args:

@@ -30,11 +30,7 @@ BASE_FEATURES = STATE_FEATURES + ACTION_FEATURES  # 19 (paper, Section IV-A)
 def affine(weight: Tensor, bias: Tensor, x: Tensor, gelu: bool = False) -> Tensor:
     """Return `weight @ x + bias` `[outputs, N]`, through a Gaussian error linear unit if asked.
 
-    Args:
-        weight: `[outputs, inputs]`.
-        bias: `[outputs, 1]`.
-        x: `[inputs, N]`.
-        gelu: Whether the unit follows.
+    `weight` is `[outputs, inputs]`, `bias` `[outputs, 1]`, `x` `[inputs, N]`.
     """
     built = kernels_for(weight, bias, x)
     if built is None:

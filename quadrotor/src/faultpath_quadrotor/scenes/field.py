@@ -38,14 +38,10 @@ class Lattice:
 
     The outer of the two has no corner on a face, where a wall's depth may count, so that what lies
     further out follows the arena alone.
-
-    Attributes:
-        axes: World coordinates of the lattice points along x, y and z, m, float64.
-        spacing_m: Distance between neighbours.
     """
 
     axes: tuple[Tensor, Tensor, Tensor]
-    spacing_m: float = CELL_M
+    """World coordinates of the lattice points along x, y and z, m, float64."""
 
     @classmethod
     def over(cls, scene: Scene) -> "Lattice":
@@ -123,23 +119,14 @@ class _Field(Block):
 
 @dataclass(frozen=True)
 class DistanceField:
-    """Baked distance of B scenes.
+    """Baked distance of B scenes."""
 
-    Attributes:
-        table: Values at the lattice points of all scenes baked together, `[P]`, m, z fastest.
-        pitch: Table places per step along x, along y and along z.
-        origin: First lattice point, `[3, B, 1]`, m.
-        last: Greatest cell number along each axis, `[3, B, 1]`.
-        first: Table place of each scene's first lattice point, `[B, 1]`, int32.
-        per_metre: Cells per metre.
-    """
-
-    table: Tensor
-    pitch: tuple[int, int, int]
-    origin: Tensor
-    last: Tensor
-    first: Tensor
-    per_metre: float
+    table: Tensor  # values at the lattice points of all scenes baked together, `[P]`, m, z fastest
+    pitch: tuple[int, int, int]  # table places per step along x, along y and along z
+    origin: Tensor  # first lattice point, `[3, B, 1]`, m
+    last: Tensor  # greatest cell number along each axis, `[3, B, 1]`
+    first: Tensor  # table place of each scene's first lattice point, `[B, 1]`, int32
+    per_metre: float  # cells per metre
 
     @classmethod
     def bake(

@@ -29,25 +29,15 @@ def rectangle_distance(beyond_x: Tensor, beyond_y: Tensor) -> Tensor:
 
 @dataclass(frozen=True)
 class Geometry:
-    """Prisms of a batch of scenes, padded to the same number: K prisms, B scenes.
+    """Prisms of a batch of scenes, padded to the same number: K prisms, B scenes."""
 
-    Attributes:
-        along_x: What world x adds to each local coordinate, `[3, K, B]`.
-        along_y: What world y adds, `[3, K, B]`.
-        along_z: What world z adds, `[3, 1, 1]`.
-        offset: Local coordinates of the centres, `[3, K, B]`, m.
-        half: Half extents, `[3, K, B]`, m.
-        rounding: Rounding radii, `[K, B]`, m.
-        sign: +1 solid, -1 arena, `[K, B]`.
-    """
-
-    along_x: Tensor
-    along_y: Tensor
-    along_z: Tensor
-    offset: Tensor
-    half: Tensor
-    rounding: Tensor
-    sign: Tensor
+    along_x: Tensor  # what world x adds to each local coordinate, `[3, K, B]`
+    along_y: Tensor  # what world y adds, `[3, K, B]`
+    along_z: Tensor  # what world z adds, `[3, 1, 1]`
+    offset: Tensor  # local coordinates of the centres, `[3, K, B]`, m
+    half: Tensor  # half extents, `[3, K, B]`, m
+    rounding: Tensor  # rounding radii, `[K, B]`, m
+    sign: Tensor  # +1 solid, -1 arena, `[K, B]`
 
     @classmethod
     def stack(

@@ -128,17 +128,11 @@ FROZEN = ("training", "selection", "held-out", "confirmation", "decision")
 
 @dataclass(frozen=True)
 class SceneLibrary:
-    """Scenes that belong together.
-
-    Attributes:
-        name: The library's name.
-        scenes: Its scenes in order; scene i has index i.
-        content_hash: Hexadecimal digest of the name and of every scene.
-    """
+    """Scenes that belong together."""
 
     name: str
-    scenes: tuple[Scene, ...]
-    content_hash: str
+    scenes: tuple[Scene, ...]  # in order; scene i has index i
+    content_hash: str  # hexadecimal digest of the name and of every scene
 
     @classmethod
     def of(cls, name: str, scenes: tuple[Scene, ...]) -> "SceneLibrary":

@@ -24,21 +24,13 @@ Plan = tuple[float, float]
 
 @dataclass(frozen=True)
 class RoundedPrism:
-    """An upright prism over a rounded rectangle, in the world frame.
+    """An upright prism over a rounded rectangle, in the world frame."""
 
-    Attributes:
-        centre_m: Centre of the plan and mid height.
-        half_m: Half extents of the rectangle along its own axes and half the height.
-        yaw_rad: Angle from world x to the rectangle's first axis.
-        rounding_m: Radius by which the rectangle is grown.
-        sign: +1 when the prism is solid, -1 when it is the free inside of the arena.
-    """
-
-    centre_m: Point
-    half_m: Point
-    yaw_rad: float = 0.0
-    rounding_m: float = 0.0
-    sign: float = 1.0
+    centre_m: Point  # centre of the plan and mid height
+    half_m: Point  # half extents of the rectangle along its own axes and half the height
+    yaw_rad: float = 0.0  # angle from world x to the rectangle's first axis
+    rounding_m: float = 0.0  # radius by which the rectangle is grown
+    sign: float = 1.0  # +1 when the prism is solid, -1 when it is the free inside of the arena
 
     @property
     def corners_m(self) -> tuple[Plan, ...]:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from faultpath.plugin.system import UserError
+from faultpath_quadrotor.training import CLEARANCE_POOL, TRAJECTORY_POOL
 
 if TYPE_CHECKING:
     from faultpath_quadrotor.training.fitting import ModelTask
@@ -19,7 +20,6 @@ Factory = Callable[[str, int, Path], "ModelTask"]
 """Makes a task from its name, its seed and the folder of the data; a function of a module, so that
 worker processes find it."""
 
-CLEARANCE_POOL, TRAJECTORY_POOL = "clearance", "trajectory"
 MODEL_SEEDS = (0, 1, 2)
 """Seeds of the models that results average over (paper, captions of its tables)."""
 SHARED_LOSS_SEEDS = (*MODEL_SEEDS, 3, 4, 5)
@@ -99,11 +99,6 @@ GROUPS: dict[str, tuple[ModelEntry, ...]] = {
     "reconstructions": RECONSTRUCTIONS,
     "all": ALL,
 }
-
-
-def pools_of(name: str) -> tuple[str, ...]:
-    """Return the pools that a model above is fitted on."""
-    return next(entry.pools for entry in ALL if entry.name == name)
 
 
 def choose(names: Sequence[str], seeds: Sequence[int] = ()) -> tuple[FitJob, ...]:

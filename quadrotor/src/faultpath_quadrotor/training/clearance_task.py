@@ -28,7 +28,7 @@ from faultpath_quadrotor.scenes.geometry import Geometry
 from faultpath_quadrotor.scenes.library import load_library
 from faultpath_quadrotor.scenes.scene import Scene
 from faultpath_quadrotor.state import State
-from faultpath_quadrotor.training.catalogue import CLEARANCE_POOL
+from faultpath_quadrotor.training import CLEARANCE_POOL
 from faultpath_quadrotor.training.fitting import ModelTask
 from faultpath_quadrotor.training.pool import (
     PoolPart,
@@ -80,19 +80,12 @@ class ClearanceRecipe(Frozen):
 
 @dataclass(frozen=True)
 class Samples:
-    """Images with their labelled points.
+    """Images with their labelled points."""
 
-    Attributes:
-        depth: z-depth, `[I, 36, 64]`, uint16, tenths of a millimetre.
-        points: In the capture frame, `[I, 3, Q]`, m.
-        clearance: Visible-space signed distance, `[I, Q]`, m.
-        scene: Index of each image's scene in its library, `[I]`.
-    """
-
-    depth: Tensor
-    points: Tensor
-    clearance: Tensor
-    scene: Tensor
+    depth: Tensor  # z-depth, `[I, 36, 64]`, uint16, tenths of a millimetre
+    points: Tensor  # in the capture frame, `[I, 3, Q]`, m
+    clearance: Tensor  # visible-space signed distance, `[I, Q]`, m
+    scene: Tensor  # index of each image's scene in its library, `[I]`
 
     def __len__(self) -> int:
         return len(self.depth)

@@ -18,8 +18,13 @@ from faultpath.plugin.training import FitProgress, read_card
 from faultpath.plugin.work import Lost, Returned, local, run_each, send_message
 from faultpath_quadrotor import models, native
 from faultpath_quadrotor.models import ModelCard, checkpoint_path
-from faultpath_quadrotor.training import clearance_task, trajectories
-from faultpath_quadrotor.training.catalogue import CLEARANCE_POOL, TRAJECTORY_POOL, FitJob
+from faultpath_quadrotor.training import (
+    CLEARANCE_POOL,
+    TRAJECTORY_POOL,
+    clearance_task,
+    trajectories,
+)
+from faultpath_quadrotor.training.catalogue import FitJob
 from faultpath_quadrotor.training.fitting import fit
 from faultpath_quadrotor.training.flight import collect, recipe
 from faultpath_quadrotor.training.pool import is_there, pool_path

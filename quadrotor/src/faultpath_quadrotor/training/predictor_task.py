@@ -23,7 +23,6 @@ from faultpath_quadrotor.predictors import (
 )
 from faultpath_quadrotor.predictors.network import features
 from faultpath_quadrotor.state import State
-from faultpath_quadrotor.training.catalogue import pools_of
 from faultpath_quadrotor.training.corruption import DCC_HALF_RANGE, corrupted, dcc
 from faultpath_quadrotor.training.fitting import ModelTask
 from faultpath_quadrotor.training.pool import pool_path, pools_sha256
@@ -40,7 +39,16 @@ from faultpath_quadrotor.training.windows import (
 DCC = "+dcc"
 BATCH_SIZE = 256  # paper, Section IV-A
 PARTS = ("position", "velocity", "rotation", "rate")
-EPOCHS = {"wm-a": 10, "wm-u": 30, "wm-a-wind": 10, "wm-a-nowind": 10}  # paper, Section IV-A
+
+
+_NOMINAL, _BOTH = ("nominal",), ("nominal", "wind")
+RECIPES = {
+    "wm-a": (_NOMINAL, 10),
+    "wm-u": (_NOMINAL, 30),
+    "wm-a-wind": (_BOTH, 10),
+    "wm-a-nowind": (_BOTH, 10),
+}
+"""Pools and epochs (paper, Section IV-A)."""
 
 
 class PredictorTask(ModelTask):
@@ -57,8 +65,8 @@ class PredictorTask(ModelTask):
         self.name = name
         self.seed = seed
         self.order_key = name.removesuffix(DCC)
-        self._pools = pools_of(name)
-        self.schedule = Schedule(epochs=EPOCHS[self.order_key], batch_size=BATCH_SIZE)
+        self._pools, epochs = RECIPES[self.order_key]
+        self.schedule = Schedule(epochs=epochs, batch_size=BATCH_SIZE)
         self._data = data
         self._half_range = half_range
         self.platform = PLATFORM.weights_hash(name)

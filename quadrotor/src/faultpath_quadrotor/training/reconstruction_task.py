@@ -17,9 +17,9 @@ from faultpath.plugin.system import generator
 from faultpath.plugin.training import Schedule
 from faultpath_quadrotor.choices import RECONSTRUCTIONS
 from faultpath_quadrotor.models import blank_reconstruction
-from faultpath_quadrotor.platform import PLATFORM
+from faultpath_quadrotor.platform import PLATFORM, TRAJECTORY
 from faultpath_quadrotor.reconstruction import RecurrentReconstruction, WindNetwork
-from faultpath_quadrotor.training.catalogue import TRAJECTORY_POOL, pools_of
+from faultpath_quadrotor.training import TRAJECTORY_POOL
 from faultpath_quadrotor.training.corruption import (
     DCC_HALF_RANGE,
     STATE_STD,
@@ -84,7 +84,7 @@ class ReconstructionTask(ModelTask):
         self.platform = PLATFORM.weights_hash(name)
         self.schedule = Schedule(epochs=40, batch_size=256, optimiser="adam")  # paper, appendix
         self._model = MODELS[name]
-        (self._pool,) = pools_of(name)
+        self._pool = TRAJECTORY_POOL if name == TRAJECTORY else "wind"
         self._data = data_folder
         self.order_key = name.partition("+")[0]
         blank = blank_reconstruction(name)

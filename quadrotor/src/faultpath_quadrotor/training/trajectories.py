@@ -22,8 +22,7 @@ from faultpath_quadrotor.device import CPU
 from faultpath_quadrotor.plant.module import ACTION, CONTROL_STEPS, Flying
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.system import Quadrotor
-from faultpath_quadrotor.training import recorded
-from faultpath_quadrotor.training.catalogue import TRAJECTORY_POOL
+from faultpath_quadrotor.training import TRAJECTORY_POOL, recorded
 from faultpath_quadrotor.training.pool import (
     PoolPart,
     PoolRecipe,
