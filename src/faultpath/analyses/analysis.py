@@ -11,9 +11,11 @@ from faultpath.core.streams import generator
 from faultpath.core.text import unknown
 from faultpath.faults import Fault, at_readers, describe
 from faultpath.interface import module_of
-from faultpath.run import Deliveries, Plan, Row, Treatment, Trials
+from faultpath.run.deliveries import Deliveries
 from faultpath.run.execution.state import Stop
+from faultpath.run.plan import Plan, Row, Treatment
 from faultpath.run.question import RepairQuestion, Request
+from faultpath.run.trials import Trials
 from faultpath.system.declared import Library, Variant
 from faultpath.system.system import System
 

@@ -21,8 +21,10 @@ from faultpath.core.errors import UserError
 from faultpath.core.text import counted, unknown
 from faultpath.faults import Fault
 from faultpath.loop import TapCount
-from faultpath.run import Deliveries, Plan, SystemSpec, Trials
+from faultpath.run.deliveries import Deliveries
+from faultpath.run.plan import Plan, SystemSpec
 from faultpath.run.question import FEWEST_TRAININGS, AuditQuestion
+from faultpath.run.trials import Trials
 from faultpath.system.declared import Library
 from faultpath.system.system import System
 

@@ -7,7 +7,7 @@ from pydantic import Discriminator, Field, Tag
 
 from faultpath.core.results import Result
 from faultpath.faults import Fault
-from faultpath.run import SystemSpec
+from faultpath.run.plan import SystemSpec
 from faultpath.run.question import AuditQuestion, Generalise, Request
 from faultpath.run.received.question import JudgeQuestion
 from faultpath.stats.estimate import TESTS

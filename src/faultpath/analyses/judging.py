@@ -13,14 +13,13 @@ from faultpath.analyses.facts import ComparisonFacts
 from faultpath.analyses.model import AS_RUN, CORRECT, SHARED, Condition, title_of, where
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
-from faultpath.run import Trials
 from faultpath.run.deliveries import unproven
 from faultpath.run.findings import ExtraTrials, Finding, MissingTrials, NoneFailed, SeveralTasks
 from faultpath.run.question import FEWEST_TRAININGS
 from faultpath.run.received.question import JudgeQuestion
 from faultpath.run.received.trial import NO_OUTCOME, Received
 from faultpath.run.store.tables import FIXED
-from faultpath.run.trials import Trial
+from faultpath.run.trials import Trial, Trials
 from faultpath.system.outcome import Metric, Outcome, Status, failed_outcome
 
 Key = tuple[str, str]

@@ -22,8 +22,8 @@ from typing import TypeAlias
 import numpy as np
 
 from faultpath.analyses.model import SHARED, AuditResult
-from faultpath.run import Group, Trials, pair
-from faultpath.run.pairing import unlike
+from faultpath.run.pairing import Group, pair, unlike
+from faultpath.run.trials import Trials
 from faultpath.system.outcome import Outcome, Status
 
 At: TypeAlias = tuple[str, int]

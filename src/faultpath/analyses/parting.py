@@ -16,7 +16,7 @@ from pydantic import Field
 
 from faultpath.core.results import Frozen
 from faultpath.interface import Channel, Provenance, module_of
-from faultpath.run import SystemShown
+from faultpath.run.shown import SystemShown
 from faultpath.run.store.signals import DRAWN, Signal
 from faultpath.run.store.tables import TrialAddress
 from faultpath.system.outcome import Outcome, Status

@@ -19,9 +19,11 @@ from faultpath.core.errors import UserError
 from faultpath.core.text import listed
 from faultpath.faults import Fault, FaultText, at_readers, describe, reaching
 from faultpath.interface import module_of
-from faultpath.run import Deliveries, Plan, Row, SystemSpec, Trials
+from faultpath.run.deliveries import Deliveries
 from faultpath.run.findings import Unpaired
+from faultpath.run.plan import Plan, Row, SystemSpec
 from faultpath.run.question import MapQuestion
+from faultpath.run.trials import Trials
 from faultpath.system.declared import Library, Variant
 from faultpath.system.system import System
 

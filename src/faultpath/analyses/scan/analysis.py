@@ -25,8 +25,10 @@ from faultpath.analyses.scan.sources import Candidate, Ranking, candidates
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
 from faultpath.faults import at_readers
-from faultpath.run import Deliveries, Plan, Row, SystemSpec, Trials
+from faultpath.run.deliveries import Deliveries
+from faultpath.run.plan import Plan, Row, SystemSpec
 from faultpath.run.question import ScanQuestion
+from faultpath.run.trials import Trials
 from faultpath.stats.cancelling import fewest_scenes
 from faultpath.system.declared import Library, Variant
 from faultpath.system.loop_system import LoopSystem

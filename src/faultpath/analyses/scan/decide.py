@@ -20,9 +20,11 @@ from faultpath.analyses.scan.model import (
 )
 from faultpath.analyses.scan.sources import Ranking
 from faultpath.core.errors import UserError
-from faultpath.run import Deliveries, Group, Trials, pair
+from faultpath.run.deliveries import Deliveries
 from faultpath.run.findings import Unpaired
+from faultpath.run.pairing import Group, pair
 from faultpath.run.question import ScanQuestion
+from faultpath.run.trials import Trials
 from faultpath.stats.cancelling import LEVEL, MOST, StageOne, cancelling, stage_one
 from faultpath.stats.inputs import Floats
 

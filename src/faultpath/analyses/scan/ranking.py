@@ -24,8 +24,8 @@ from faultpath.core.error_source import described
 from faultpath.core.errors import Notice
 from faultpath.faults import Fault, at_readers
 from faultpath.loop import Batch, Inputs, Loop, Plant, Progress, Reading, Taps
-from faultpath.run import Treatment
 from faultpath.run.attempt import taps_of
+from faultpath.run.plan import Treatment
 from faultpath.stats.inputs import Floats
 from faultpath.system.declared import Variant
 from faultpath.system.loop_system import LoopSystem
