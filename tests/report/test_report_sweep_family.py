@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from faultpath.analyses.family import tested_contrasts
+from faultpath.analyses.family import contrasts_of
 from faultpath.analyses.model import CORRECT
 from faultpath.report.compared import Compared, together
 from faultpath.report.inputs import ReportInput
@@ -20,7 +20,7 @@ def drawn(source: ReportInput, rng: np.random.Generator, sizes: int) -> list[Com
         told = []
         for effect in source.record.effects:
             p = correct if effect.condition == CORRECT else float(rng.random())
-            own = min(1.0, len(tested_contrasts(source.record)) * p)
+            own = min(1.0, len(contrasts_of(source.record)) * p)
             sign = (1 if rng.random() < 0.5 else -1) if own <= 0.05 else 0
             changed = {"p_value": p, "corrected_p": own, "sign": sign}
             told.append(effect.model_copy(update=changed))
@@ -44,7 +44,7 @@ def test_the_family_is_that_of_all_sizes(one_seed: ReportInput, sizes: int) -> N
 
 def test_correct_inputs_that_are_the_same_trials_count_once(one_seed: ReportInput) -> None:
     runs = drawn(one_seed, np.random.default_rng(0), 3)
-    weights = {name: weight for name, (_, weight) in tested_contrasts(runs[0].record).items()}
+    weights = {name: weight for name, (_, weight) in contrasts_of(runs[0].record).items()}
     once = weights["effect/correct"]
     lowest = 1e-30
 

@@ -178,7 +178,7 @@ def _not_significant(contrast: Contrast) -> Contrast:
     return replace(contrast, test=contrast.test and contrast.test._replace(sign=0))
 
 
-def tested_contrasts(result: AuditResult) -> dict[str, tuple[float, float]]:
+def contrasts_of(result: AuditResult) -> dict[str, tuple[float, float]]:
     """Return p and weight of every contrast that was tested, by its name."""
     tested = [effect for effect in result.effects if effect.corrected_p is not None]
     p_values = {effect_name(effect.condition): effect.p_value for effect in tested}
@@ -204,7 +204,7 @@ def decide_sizes(
     tested = {
         key(size, name): contrast
         for size, result in enumerate(results)
-        for name, contrast in tested_contrasts(result).items()
+        for name, contrast in contrasts_of(result).items()
     }
     adjusted = holm(
         {name: p for name, (p, _) in tested.items()},
