@@ -5,11 +5,24 @@ the batch first and are several times slower on the planner's shapes. Everything
 is differentiable, also at the identity.
 """
 
+import numpy as np
 import torch
 from torch import Tensor
 
 from faultpath_quadrotor.native.kernel_args import lend, output
 from faultpath_quadrotor.native.library import kernels_on
+
+
+def root(square: Tensor) -> Tensor:
+    """Return the square root, rounded correctly and so alike on every processor.
+
+    Torch leaves it to a library that begins with the processor's own approximation; where gradients
+    are enabled, as training goes, so does this.
+    """
+    if square.requires_grad or square.device.type != "cpu":
+        return square.sqrt()
+    return torch.from_numpy(np.sqrt(square.numpy()))
+
 
 _NAMES = {torch.float32: "faultpath_sine_cosine_single", torch.float64: "faultpath_sine_cosine"}
 
@@ -59,7 +72,7 @@ def exp(phi: Tensor) -> Tensor:
     Rodrigues' formula through half angles, exp = cos(t) I + 2 c [q]x + 2 q q^T with t = |phi|,
     q = phi sin(t/2)/t and c = cos(t/2): no quotient of cancelled numbers at small angles.
     """
-    angle = (phi * phi).sum(0).add_(_TINY).sqrt_()
+    angle = root((phi * phi).sum(0).add_(_TINY))
     s, c = sine_cosine(angle * 0.5)
     return _from_quaternion(c, phi * (s / angle), (c * c).addcmul_(s, s, value=-1.0))
 
@@ -82,7 +95,7 @@ def log(rotation: Tensor) -> Tensor:
     quaternion = _safest_row(_outer(rotation))
     quaternion = torch.where(quaternion[0] < 0, -quaternion, quaternion)
     scalar, vector = quaternion[0], quaternion[1:]
-    norm = ((vector * vector).sum(0) + _TINY).sqrt()
+    norm = root((vector * vector).sum(0) + _TINY)
     return vector * (2.0 * torch.atan2(norm, scalar) / norm)
 
 
@@ -135,11 +148,11 @@ def project(matrix: Tensor) -> Tensor:
     one = torch.eye(4, dtype=matrix.dtype, device=matrix.device)
     one = one.view(4, 4, *(1,) * (matrix.ndim - 2))
     horn = _outer(matrix) - one
-    power = horn + (horn.square().sum((0, 1)).sqrt() + _TINY) * one
+    power = horn + (root(horn.square().sum((0, 1))) + _TINY) * one
     for _ in range(_SQUARINGS):
         power = power / (power * one).sum((0, 1))
         power = compose(power, power)
     quaternion = _safest_row(power)
-    quaternion = quaternion / quaternion.square().sum(0).sqrt()
+    quaternion = quaternion / root(quaternion.square().sum(0))
     c, q = quaternion[0], quaternion[1:]
     return _from_quaternion(c, q, c * c - (q * q).sum(0))

@@ -43,7 +43,7 @@ def mounted(rotation: Tensor) -> Tensor:
     others. A body that points straight up has no heading; its camera looks along world x.
     """
     x, y = rotation[0, 0], rotation[1, 0]
-    length = (x * x + y * y).sqrt()
+    length = so3.root(x * x + y * y)
     up = length == 0
     c, s = torch.where(up, 1, x / length), torch.where(up, 0, y / length)
     zero, one = torch.zeros_like(c), torch.ones_like(c)

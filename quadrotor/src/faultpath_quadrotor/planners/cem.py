@@ -6,6 +6,7 @@ import torch
 from torch import Tensor
 from typing_extensions import override
 
+from faultpath_quadrotor import so3
 from faultpath_quadrotor.planners.base import Planner, Search, mean
 from faultpath_quadrotor.planners.costs import NavigationCost, Scored
 from faultpath_quadrotor.planners.sampler import AutoregressiveSampler, bound, scales
@@ -61,5 +62,5 @@ class CEM(Planner):
         return replace(
             search,
             plan=plan.lerp(search.plan, self.momentum),
-            spread=variance.sqrt_().lerp(search.spread, self.momentum),
+            spread=so3.root(variance).lerp(search.spread, self.momentum),
         )

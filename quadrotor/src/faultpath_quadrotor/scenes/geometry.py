@@ -18,12 +18,13 @@ from torch import Tensor
 
 from faultpath_quadrotor.scenes.prisms import arena, solids
 from faultpath_quadrotor.scenes.scene import Scene
+from faultpath_quadrotor.so3 import root
 
 
 def rectangle_distance(beyond_x: Tensor, beyond_y: Tensor) -> Tensor:
     """Return the signed distance in the plane from how far a point lies beyond each edge pair."""
     out_x, out_y = beyond_x.clamp_min(0), beyond_y.clamp_min(0)
-    outside = (out_x.mul_(out_x) + out_y.mul_(out_y)).sqrt_()
+    outside = root(out_x.mul_(out_x) + out_y.mul_(out_y))
     return outside.add_(torch.maximum(beyond_x, beyond_y).clamp_max_(0))
 
 
