@@ -12,6 +12,7 @@ from typing_extensions import override
 from faultpath.core.arrays import Array, namespace, to_numpy
 from faultpath.interface import Provenance
 from faultpath.loop import Batch, Deliverer, Graph, Loop, Module, Plant, Taps, graph, readers
+from faultpath.system.arguments import modules_of, plant_of
 from faultpath.system.outcome import Outcome, Status, control_steps
 from faultpath.system.system import BLOCK, System, Variant
 
@@ -144,4 +145,5 @@ class LoopSystem(System):
 
     def _graph(self, variant: str, seed: int | None) -> Graph:
         bindings = self.wirings[variant].bindings
-        return graph(self.interface, self.plant(), self.modules(variant, seed), bindings)
+        modules = modules_of(variant, self.modules(variant, seed))
+        return graph(self.interface, plant_of(self.plant()), modules, bindings)
