@@ -54,8 +54,10 @@ def test_each_size_is_an_audit_as_if_alone(tmp_path):
     alone = faultpath.audit(TOY, fault="gain:scale=0.8", folder=tmp_path / "alone", **ASKED)
     assert strong.record == alone.record
     assert strong.table() == alone.table()
+    with pytest.raises(UserError, match="alone holds a run: give another folder"):
+        faultpath.api.audits(TOY, fault="gain:scale=0.6,0.8", folder=alone.folder, **ASKED)
 
 
 def test_one_audit_takes_one_size():
-    with pytest.raises(UserError, match=r"several sizes: use faultpath\.api\.audits"):
+    with pytest.raises(UserError, match=r"takes one; from Python, faultpath\.api\.audits"):
         faultpath.audit(TOY, fault="gain:scale=0.6..0.8/3", **ASKED)
