@@ -39,7 +39,8 @@ def headline(record: AuditResult) -> str:
     ends = {rate for effect in tested for rate in effect.rates}
     if ends <= {0.0, 100.0} and not any(any(map(any, effect.won)) for effect in tested):
         every = [word for end, word in ((100.0, "succeed"), (0.0, "fail")) if end in ends]
-        return f"No difference could show: in every scene both versions {' or '.join(every)}."
+        ran = " that ran in both," if any(effect.void for effect in tested) else ""
+        return f"No difference could show: in every scene{ran} both versions {' or '.join(every)}."
     turned = reversed_at(record)
     if turned:
         text = _reversal(record, main, turned)
