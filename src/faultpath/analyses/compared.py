@@ -47,7 +47,8 @@ def compared(repair: str, baseline: str, conditions: Iterable[str], trials: Tria
     left = [condition for condition, pair in success.items() if paired_scenes(*pair).any()]
     if not left:
         row = int(np.flatnonzero(trials.failed)[0])
-        variant, condition, _, scene = trials.places[row]
+        place: list[int] = trials.places[row].tolist()
+        variant, condition, _, scene = place
         why = f" ({trials.errors[row]})" if row in trials.errors else ""
         raise UserError(
             "no scene is left to compare, because in each of them a trial failed, such as that of "

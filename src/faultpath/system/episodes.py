@@ -214,7 +214,7 @@ class EpisodePlant(Plant):
         try:
             lines = np.array(drawings, dtype=float)
         except (TypeError, ValueError):
-            lines = np.empty(0)
+            lines = np.empty((0, 0, 0))
         if lines.ndim != 3 or lines.shape[2] != 2:
             raise mistake_in(
                 self._render,
