@@ -69,6 +69,14 @@ def test_what_hangs_on_one_trial_is_open_and_what_does_not_is_decided():
     assert "new is ahead" in words(safe).headline
 
 
+def test_how_scenes_with_a_failed_trial_end_is_not_said():
+    scene = np.arange(SCENES)
+    made = audit((ends(scene >= 0, scene < 30), ends(scene >= 0)))
+    assert words(made).headline == (
+        "No difference could show: in every scene that ran in both, both versions succeed."
+    )
+
+
 def test_a_failure_on_one_condition_costs_the_others_nothing():
     scene = np.arange(SCENES)
     correct = ends(scene < 90), ends((scene >= 20) & (scene < 95))

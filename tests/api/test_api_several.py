@@ -80,5 +80,7 @@ def test_each_size_is_an_audit_as_if_alone(tmp_path: Path) -> None:
     alone = faultpath.audit(TOY, **QUESTION | {"fault": "gain:scale=0.8"}, folder=tmp_path / "a")
     assert strong.record == alone.record
     assert strong.table() == alone.table()
-    with pytest.raises(UserError, match=r"several sizes: use faultpath\.api\.audits"):
+    with pytest.raises(UserError, match="a holds a run: give another folder"):
+        faultpath.api.audits(TOY, **sizes, folder=alone.folder)
+    with pytest.raises(UserError, match=r"takes one; from Python, faultpath\.api\.audits"):
         faultpath.audit(TOY, **sizes)

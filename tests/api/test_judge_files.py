@@ -250,3 +250,33 @@ def test_names_that_are_no_text_are_a_damaged_table(tmp_path: Path) -> None:
         pa.table({"variant": data, "scene": ["s"], "success": [1]}), tmp_path / "a.parquet"
     )
     assert "a.parquet: cannot be read" in refused(tmp_path / "a.parquet", tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("results", "folder", "says"),
+    [
+        (None, "run", "results: None is no path: give files or folders"),
+        ({"scene": [1]}, "run", "is no path"),
+        (b"all.csv", "run", "is no path"),
+        ("all.csv", 3, "folder: is 3, and must be a Path"),
+    ],
+)
+def test_what_is_no_path_is_refused(results: object, folder: Any, says: str) -> None:
+    with pytest.raises(UserError, match=says):
+        judged(results, Path(), folder=folder)
+
+
+DAMAGED: dict[str, tuple[str, bytes, str]] = {
+    "kind": ("a.txt", b"", "is of no kind that is read"),
+    "json": ("a.json", b'{"per_task": [{"task_id": 1}]}', r"per_task\[0\].task_group: is missing"),
+    "neither": ("a.json", b"{}", "is neither LeRobot's eval_info.json"),
+    "line": ("a.jsonl", b'{"variant": 1}\n{', "a.jsonl, line 2: is not JSON"),
+    "parquet": ("a.parquet", b"PAR1", "a.parquet: cannot be read"),
+}
+
+
+@pytest.mark.parametrize(("name", "data", "says"), DAMAGED.values(), ids=DAMAGED)
+def test_a_damaged_file_is_one_sentence(name: str, data: bytes, says: str, tmp_path: Path) -> None:
+    (tmp_path / name).write_bytes(data)
+    with pytest.raises(UserError, match=says):
+        judged(tmp_path / name, tmp_path)

@@ -96,7 +96,7 @@ def alter_table(path: Path, rng: Random) -> None:
             table = pa.concat_tables([table, table])
         case 4:
             table = table.set_column(place, name, pa.array([str(v) for v in values]))
-        case _:
+        case _ if values:
             odd = {pa.string(): ("", "odd", "\u2028", "<b>", "x" * 3000), pa.int64(): (-1, 2**62)}
             numbers = (None, float("nan"), float("inf"), -1.0, 1e308, 5e-324)
             listed = ([], None, [float("nan")], [1e38] * 3)

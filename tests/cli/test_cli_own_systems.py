@@ -27,6 +27,7 @@ BROKEN = {
     "index above 2^63": ("SceneRef('a', 2 ** 63)  # here", "2^63 - 1"),
     "scene twice": ("Library('l', (SceneRef('a', 0), SceneRef('a', 1)), 'h')  # here", "'a' twice"),
     "no hash": ("Library('l', (), '')  # here", "content hash"),
+    "no scene": ("Library('l', (), 'h')  # here", "library 'l' holds no scene"),
 }
 
 DECLARED = {
@@ -35,6 +36,11 @@ DECLARED = {
     "unknown reader": (
         "variants = {'v': Variant('v', '', frozenset({'nobody.there'}))}",
         "unknown reader 'nobody.there'",
+    ),
+    "no plant": ("def plant(self):\n        pass", "`plant` returned None: return a Plant"),
+    "no modules": (
+        "def modules(self, variant, seed):\n        pass",
+        "variant 'calibrated' is None: give a list of modules",
     ),
     "fingerprint that fails": ("def fingerprint(self):\n        return 1 / 0  # here", "Zero"),
 }

@@ -175,7 +175,7 @@ def test_a_run_does_not_go_on_in_one_of_another_question(first: str, second: str
 def test_pages_replace_no_page_of_somebody_else(run: Path, tmp_path: Path) -> None:
     opened = open_run(run)
     (tmp_path / "table.md").write_text("mine")
-    with pytest.raises(UserError, match=r"holds table.md, which this run did not write"):
+    with pytest.raises(UserError, match=r"holds table.md, which is not of this run"):
         opened.report(tmp_path)
     for _ in range(2):  # what it wrote itself may be written again
         assert len(opened.report(tmp_path / "other")) > 1

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from faultpath.core import trees
+from faultpath.core.errors import UserError
 from faultpath.core.trees import Root
 from faultpath.faults import at_readers
 from faultpath.run.attempt import Done, attempt
@@ -123,6 +124,9 @@ def test_data_files_count_with_their_contents(files):
     assert set(before.data) == {"weights/a.bin"}
     (folder / "weights" / "b.bin").touch()
     assert before.changed(state()) == ("weights/b.bin",)
+    (folder / "weights" / "c.bin").symlink_to("nowhere")
+    with pytest.raises(UserError, match=r"cannot read .*weights/c\.bin \(No such file"):
+        state()
 
 
 def test_an_installed_system_counts_by_its_contents_and_what_it_uses_by_its_version(

@@ -15,7 +15,7 @@ GOOD = Outcome("a", Status.SUCCESS, 2.0, "i", "d", "none", {"rms_m": 0.5})
 @pytest.mark.parametrize(
     ("fields", "said"),
     [
-        ({"status": "success"}, "status is 'success': give a faultpath.run.Status"),
+        ({"status": "success"}, "status is 'success': give a faultpath.system.Status"),
         ({"time_s": math.nan}, "time_s is nan"),
         ({"time_s": "2"}, "time_s is '2': give a number"),
         ({"time_s": True}, "time_s is True"),

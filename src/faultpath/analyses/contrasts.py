@@ -48,13 +48,14 @@ def compared(repair: str, baseline: str, conditions: Iterable[str], trials: Tria
     success = {condition: paired.success for condition, paired in pairs.items()}
     left = [condition for condition, ends in success.items() if paired_scenes(*ends).any()]
     if not left:
-        row, error = next(iter(trials.errors.items()))
+        row = int(np.flatnonzero(trials.failed)[0])
         place: list[int] = trials.places[row].tolist()
         variant, condition, _, scene = place
+        why = f" ({trials.errors[row]})" if row in trials.errors else ""
         raise UserError(
             "no scene is left to compare, because in each of them a trial failed, such as that of "
             f"{trials.variants[variant]} in {trials.scenes[scene].id} "
-            f"{where(trials.conditions[condition])} ({error}): fix what made it fail, or choose "
+            f"{where(trials.conditions[condition])}{why}: fix what made it fail, or choose "
             "other scenes."
         )
     columns = np.concatenate([part for condition in left for part in success[condition]])

@@ -28,7 +28,7 @@ from faultpath.api.job import Job, begin, run, with_question_signature
 from faultpath.api.replaying import Replayed, outcomes_at, run_again, shown_first
 from faultpath.api.runs import MapRun, Run, ScanRun
 from faultpath.core.errors import UserError
-from faultpath.core.files.atomic import write_file, write_text
+from faultpath.core.files.atomic import is_run, write_file, write_text
 from faultpath.core.files.parquet import Unreadable
 from faultpath.core.text import counted
 from faultpath.faults import FaultText
@@ -108,6 +108,8 @@ def audits(
     if not isinstance(fault, FaultText) or len(fault.sizes) < 2:
         return (audit(system, progress=progress, **{**arguments, "fault": fault}),)
     folder = arguments.pop("folder", None)
+    if folder is not None and is_run(Path(folder)):
+        raise UserError(f"{folder} holds a run: give another folder for the audits of each size.")
     runs: list[Run] = []
     for number, sized in enumerate(fault.each(), 1):
         place = None if folder is None else Path(folder) / f"size-{number}"

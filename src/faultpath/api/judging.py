@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from datetime import UTC, datetime
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -58,7 +58,7 @@ def judge(
     """
     question = ask(JudgeQuestion, arguments, isinstance(progress, Display) and progress.is_command)
     named = [results] if isinstance(results, str | PathLike) else results
-    if not isinstance(named, Sequence) or not all(isinstance(n, str | PathLike) for n in named):
+    if not _are_paths(named):
         raise UserError(f"results: {declared.shown(results)} is no path: give files or folders.")
     if not named:
         raise UserError("there are no results to judge: name a file.")
@@ -91,6 +91,12 @@ def judge(
         for finding in paired.findings:
             shown.say(describe(finding))
     return run
+
+
+def _are_paths(results: object) -> bool:
+    """Return whether these are paths: a notebook may hand over anything."""
+    several = cast("Sequence[object]", results) if isinstance(results, Sequence) else [results]
+    return all(isinstance(path, str | PathLike) for path in several)
 
 
 def _modules_notice(paired: PairedResults, shown: Display) -> str:

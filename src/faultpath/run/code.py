@@ -147,8 +147,8 @@ def read_code(
                 files[name.as_posix()], digests[name.as_posix()] = file, _digest(file)
         except OSError as error:
             raise UserError(
-                f"cannot read {place} ({error.strerror}), which the system names among its data "
-                "files: put it there, or take it out of data_files"
+                f"cannot read {error.filename or place} ({error.strerror}), which the system names "
+                "among its data files: put it there, or take it out of data_files"
             ) from error
     return Code(
         state=CodeState(

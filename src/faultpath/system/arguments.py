@@ -16,7 +16,7 @@ import numpy as np
 from faultpath.core.error_source import mistake_in
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import ADDRESS, counted
-from faultpath.loop import Module
+from faultpath.loop import Module, Plant
 from faultpath.system import declared
 from faultpath.system.outcome import Metric
 
@@ -52,6 +52,13 @@ def modules_of(variant: str, modules: Any) -> Sequence[Module]:
             "def"
         )
     return cast("Sequence[Module]", modules)
+
+
+def plant_of(plant: Any) -> Plant:
+    """Return the plant of a system."""
+    if not isinstance(plant, Plant):
+        raise SystemMistake(f"`plant` returned {shown(plant)}: return a Plant")
+    return plant
 
 
 def variants_of(variants: Any) -> Mapping[str, Any]:

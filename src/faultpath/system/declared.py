@@ -99,6 +99,8 @@ class Library:
                     f"{label} gives scenes '{other}' and '{scene.id}' the index {scene.index}: "
                     "number its scenes 0, 1, 2, ..."
                 )
+        if not seen:
+            raise SystemMistake(f"{label} holds no scene: give it at least one")
 
 
 def _items(what: str, members: Any) -> Iterable[Any]:

@@ -11,6 +11,7 @@ from typing_extensions import override
 from faultpath.core.arrays import Array, namespace, to_numpy
 from faultpath.interface import Provenance
 from faultpath.loop import Batch, Deliverer, Graph, Loop, Module, Plant, Taps, graph, readers
+from faultpath.system.arguments import modules_of, plant_of
 from faultpath.system.outcome import Outcome, Status, control_steps
 from faultpath.system.system import BLOCK, System, Variant
 
@@ -138,5 +139,5 @@ class LoopSystem(System):
         return outcomes
 
     def _graph(self, variant: str, seed: int | None) -> Graph:
-        modules, bindings = self.modules(variant, seed), self.bindings(variant)
-        return graph(self.interface, self.plant(), modules, bindings)
+        modules = modules_of(variant, self.modules(variant, seed))
+        return graph(self.interface, plant_of(self.plant()), modules, self.bindings(variant))

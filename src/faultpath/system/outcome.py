@@ -132,7 +132,7 @@ def checked(outcome: Outcome, metrics: Collection[str] = ()) -> Outcome:
         return failed_outcome(outcome.scene, outcome.error or "the system said that it failed")
     try:
         if not isinstance(status, Status):
-            raise _Malformed(f"status is {shown(status)}: give a faultpath.run.Status")
+            raise _Malformed(f"status is {shown(status)}: give a faultpath.system.Status")
         time_s = _number("time_s", outcome.time_s)
         if time_s <= 0:
             raise _Malformed(f"time_s is {time_s}: a trial takes at least one control step")

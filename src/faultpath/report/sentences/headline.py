@@ -39,7 +39,8 @@ def headline(result: AuditResult) -> str:
     ends = {rate for effect in tested for rate in effect.rates}
     if ends <= {0.0, 100.0} and not any(any(map(any, effect.won)) for effect in tested):
         endings = [word for end, word in ((100.0, "succeed"), (0.0, "fail")) if end in ends]
-        return f"No difference could show: in every scene both versions {' or '.join(endings)}."
+        which = "every scene that ran in both," if any(of.void for of in tested) else "every scene"
+        return f"No difference could show: in {which} both versions {' or '.join(endings)}."
     reversals = reversed_at(result)
     if reversals:
         text = _reversal(result, main, reversals)
