@@ -121,7 +121,7 @@ def pair(
         raise PairingRefused(f"cannot pair {first} with {second}: the table has no trial of it")
     one, two = (_rows(trials, group, seeds) for group in (first, second))
     planned = np.concatenate([one >= 0, two >= 0])
-    chosen: Bools = np.asarray(planned.any(axis=0))
+    chosen = np.asarray(planned.any(axis=0))
     if (partly := chosen & ~planned.all(axis=0)).any():
         raise PairingRefused(
             f"cannot pair {first} with {second}: they ran in different scenes, for example "
