@@ -261,7 +261,7 @@ def test_the_page_has_the_numbers_of_the_code():
         f"costs more than {COSTLY_PP:g} percentage points is halved",
         f"up to {count[HALVINGS]} times",
         f"(p below {LEVEL:g}) go on, {count[MOST]} at most",
-        f"about {TRIALS:,} trials",
+        f"as many scenes as {TRIALS:,} trials allow",
         f"regain at least {'half' if REGAINED == 0.5 else REGAINED} of",
         f"Holm's correction at {100 * ALPHA / 2:g} %",
         f"Tested apart, at {100 * ALPHA:g} %",

@@ -12,12 +12,12 @@ from no_files import THINGS
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import locked
-from faultpath.core.files.opening import contents
+from faultpath.core.files.opening import contents, read_regular
 from faultpath.core.files.parquet import Unreadable
 from faultpath.core.files.plain import Misread, read_json, read_yaml
 from faultpath.interface import read_interface
 from faultpath.learning.model_card import FitRecord, read_card
-from faultpath.run.store.folder import RunFolder, read_manifest, read_outcomes, read_regular
+from faultpath.run.store.folder import RunFolder, read_manifest, read_outcomes
 
 Read = Callable[[Path], object]
 

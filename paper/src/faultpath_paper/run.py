@@ -7,7 +7,7 @@ from pathlib import Path
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import write_text
-from faultpath.core.files.opening import LARGEST_TEXT, contents
+from faultpath.core.files.opening import LARGEST_TEXT, contents, read_regular
 from faultpath.core.files.plain import Misread, model_of
 from faultpath.report.tables import Table
 from faultpath.run.code import system_code
@@ -21,7 +21,6 @@ from faultpath.run.store.folder import (
     RunFolder,
     keyed,
     read_outcomes,
-    read_regular,
 )
 from faultpath.run.trials import Trials
 from faultpath.system import System

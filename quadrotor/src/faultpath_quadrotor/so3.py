@@ -16,12 +16,12 @@ from faultpath_quadrotor.native.library import kernels_on
 def root(square: Tensor) -> Tensor:
     """Return the square root, rounded correctly and so alike on every processor.
 
-    Torch leaves it to a library that begins with the processor's own approximation; where gradients
-    are enabled, as training goes, so does this.
+    Torch leaves it to a library that begins with the processor's own approximation. Torch's own
+    where gradients are enabled, as training goes.
     """
-    if square.requires_grad or square.device.type != "cpu":
+    if torch.is_grad_enabled() or square.device.type != "cpu":
         return square.sqrt()
-    return torch.from_numpy(np.sqrt(square.numpy()))
+    return torch.from_numpy(np.asarray(np.sqrt(square.numpy())))
 
 
 _NAMES = {torch.float32: "faultpath_sine_cosine_single", torch.float64: "faultpath_sine_cosine"}

@@ -29,6 +29,7 @@ from faultpath.api.replaying import Replayed, outcomes_at, run_again, shown_firs
 from faultpath.api.runs import MapRun, Run, ScanRun
 from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import is_run, write_file, write_text
+from faultpath.core.files.opening import read_regular
 from faultpath.core.files.parquet import Unreadable
 from faultpath.core.text import counted
 from faultpath.faults import FaultText
@@ -39,7 +40,7 @@ from faultpath.run.findings import Finding, Unrecorded, Unrepeated
 from faultpath.run.provenance import seal
 from faultpath.run.question import AuditCall, MapCall, ScanCall
 from faultpath.run.shown import system_shown
-from faultpath.run.store.folder import OUTCOMES, read_regular
+from faultpath.run.store.folder import OUTCOMES
 from faultpath.run.store.signals import (
     SIGNALS,
     Signal,

@@ -12,6 +12,7 @@ from pydantic import BaseModel
 from faultpath.analyses.audit import faulted_taps
 from faultpath.analyses.model import SHARED, AuditResult
 from faultpath.core.errors import UserError
+from faultpath.core.files.opening import read_regular
 from faultpath.core.files.parquet import Unreadable
 from faultpath.core.files.plain import Misread, model_of
 from faultpath.interface import Interface
@@ -19,7 +20,7 @@ from faultpath.report.inputs import ReportInput
 from faultpath.run.deliveries import Deliveries
 from faultpath.run.provenance import AGAIN, RunProvenance, unseal
 from faultpath.run.shown import SystemShown
-from faultpath.run.store.folder import DELIVERIES, OUTCOMES, TRACES, read_regular
+from faultpath.run.store.folder import DELIVERIES, OUTCOMES, TRACES
 from faultpath.run.store.signals import SIGNALS, decode_signals
 from faultpath.run.store.tables import decode_outcomes, decode_traces
 from faultpath.run.trials import Trials

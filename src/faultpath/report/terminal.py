@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 from textwrap import fill
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
 from rich.padding import Padding
@@ -23,7 +23,9 @@ from faultpath.report.sentences.phrases import (
     stopping,
 )
 from faultpath.report.tables import Entry, Line, Table, Tone, line
-from faultpath.run.check.tracing import Trace, TracedRead
+
+if TYPE_CHECKING:
+    from faultpath.run.check.tracing import Trace, TracedRead
 
 STYLES: dict[Tone, str] = {"": "", "good": "green", "bad": "bold red", "faint": "dim"}
 """How tones look."""
@@ -119,7 +121,7 @@ def interface_table(interface: Interface) -> RenderableType:
     return Group(drawn(table), *reconstructions)
 
 
-def trace_table(trace: Trace[Any]) -> Table:
+def trace_table(trace: "Trace[Any]") -> Table:
     """Return a line for each reader of a channel, in the order in which they read."""
     taps: dict[tuple[str, str], list[TracedRead]] = {}
     for read in trace.reads:

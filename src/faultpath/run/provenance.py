@@ -10,21 +10,22 @@ from collections.abc import Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 from hashlib import sha256
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from pydantic import ConfigDict, Field, StringConstraints
 
 from faultpath.core import __version__
 from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import write_text
-from faultpath.core.files.opening import LARGEST_TEXT, contents
+from faultpath.core.files.opening import LARGEST_TEXT, contents, read_regular
 from faultpath.core.files.plain import model_of
 from faultpath.core.results import Frozen, Shown
 from faultpath.core.trees import packages, release
-from faultpath.run.execution.runner import RunResult
 from faultpath.run.findings import Recheck
-from faultpath.run.store.folder import read_regular
 from faultpath.run.work.executor import Executor
+
+if TYPE_CHECKING:
+    from faultpath.run.execution.runner import RunResult
 
 PROVENANCE = "provenance.json"
 AGAIN = "run it again, into a new folder"
@@ -91,7 +92,7 @@ class RunProvenance(Shown):
 def run_provenance(
     folder: Path,
     names: Iterable[str],
-    result: RunResult,
+    result: "RunResult",
     started: datetime,
     command: Sequence[str],
     executor: Executor,

@@ -13,7 +13,6 @@ from faultpath.report.sentences import wording
 from faultpath.report.tables import MISSING, Entry, Line, Table, Tone, line, markdown_grid
 from faultpath.report.terminal import STYLES
 from faultpath_paper.answers import Answer, ClaimVerdict, Ledger, Size, StatementPart
-from faultpath_paper.claims import SUBJECTS
 from faultpath_paper.report import words
 from faultpath_paper.report.words import (
     ANSWERS,
@@ -147,6 +146,8 @@ def _ids(claims: list[ClaimVerdict], answer: str) -> str:
 
 def by_subject(ledger: Ledger) -> Table:
     """Return how the figures that the paper prints compare with ours, subject by subject."""
+    from faultpath_paper.claims import SUBJECTS  # they load pyarrow
+
     lines = [
         line(subject, *_sizes([claim for claim in ledger.claims if claim.id in claims]))
         for subject, claims in SUBJECTS.items()

@@ -8,6 +8,9 @@ import errno
 import os
 import stat
 from io import BufferedReader
+from pathlib import Path
+
+from faultpath.core.errors import UserError
 
 LARGEST = 4 * 2**30
 """Bytes of a file: a hundred times a table of a million trials; more may fill the memory."""
@@ -72,3 +75,17 @@ def contents(path: str | os.PathLike[str], most: int = LARGEST) -> bytes:
 def _too_large(path: str | os.PathLike[str], most: int) -> OSError:
     size = f"{most / 2**30:g} GiB" if most >= 2**30 else f"{most / 2**20:.3g} MiB"
     return OSError(errno.EFBIG, f"it is larger than {size}", path)
+
+
+def read_regular(path: Path) -> bytes:
+    """Return the contents of a file; `UserError` where there is none to read."""
+    try:
+        return contents(path)
+    except FileNotFoundError:
+        raise UserError(
+            f"{path.parent} holds no {path.name}: give the folder of a finished run."
+        ) from None
+    except OSError as error:
+        raise UserError(
+            f"{path} cannot be read ({error.strerror}): give the folder of a finished run."
+        ) from error

@@ -11,7 +11,7 @@ from typing import Any
 from faultpath.core.errors import UserError
 from faultpath.core.files import atomic
 from faultpath.core.files.atomic import Say, check_folder, locked, make_folder, write_file
-from faultpath.core.files.opening import LARGEST_TEXT, contents
+from faultpath.core.files.opening import LARGEST_TEXT, contents, read_regular
 from faultpath.core.files.parquet import Unreadable
 from faultpath.core.files.plain import Misread, model_of, read_json
 from faultpath.core.results import Frozen
@@ -255,20 +255,6 @@ def read_outcomes(path: Path) -> Trials:
         raise UserError(
             f"{path} is damaged ({error}): run the same command again to rebuild it"
         ) from None
-
-
-def read_regular(path: Path) -> bytes:
-    """Return the contents of a file; `UserError` where there is none to read."""
-    try:
-        return contents(path)
-    except FileNotFoundError:
-        raise UserError(
-            f"{path.parent} holds no {path.name}: give the folder of a finished run."
-        ) from None
-    except OSError as error:
-        raise UserError(
-            f"{path} cannot be read ({error.strerror}): give the folder of a finished run."
-        ) from error
 
 
 def _digest(data: bytes) -> str:
