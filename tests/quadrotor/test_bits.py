@@ -5,16 +5,20 @@ tests/quadrotor/stages.py --keep` writes them anew, and every stored run has oth
 """
 
 import json
+import math
 import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 import torch
 from faultpath_quadrotor import instructions, native
+from faultpath_quadrotor.so3 import root
 from kernel_sets import FUSED
 from stages import KEPT, measured
+from torch.utils._python_dispatch import TorchDispatchMode
 
 pytestmark = pytest.mark.skipif(not FUSED, reason="without kernels a machine keeps its own bits")
 
@@ -34,6 +38,23 @@ SETTINGS = {
         "MKL_ENABLE_INSTRUCTIONS": "SSE4_2",
     },
 }
+
+
+APPROXIMATED = {"sqrt", "rsqrt", "acos", "asin", "erf", "erfc", "erfinv"}
+"""What torch leaves to a library that begins with the processor's own approximation, or may."""
+
+
+class Called(TorchDispatchMode):
+    """Names of the operations of torch that were called, without the mark of those in place."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.names = set[str]()
+
+    def __torch_dispatch__(self, func: Any, types: Any, args: Any = (), kwargs: Any = None) -> Any:
+        del types
+        self.names.add(func.overloadpacket.__name__.rstrip("_"))
+        return func(*args, **kwargs or {})
 
 
 @pytest.fixture(scope="module")
@@ -63,6 +84,23 @@ def test_settings_of_a_user_change_no_bit(name: str, kept: dict[str, str]) -> No
         [sys.executable, script], env=variables, check=True, capture_output=True, text=True
     )
     assert changed(kept, json.loads(ended.stdout)) == []
+
+
+def test_no_stage_takes_an_approximation_of_the_processor() -> None:
+    with Called() as called:
+        measured()
+    assert {"add", "mul", "exp", "atan2"} <= called.names
+    assert not called.names & APPROXIMATED
+
+
+@pytest.mark.parametrize("dtype", [torch.float32, torch.float64])
+def test_roots_are_rounded_correctly_and_those_of_a_fit_have_a_gradient(dtype: torch.dtype) -> None:
+    squares = torch.rand(4096, dtype=dtype, generator=torch.Generator().manual_seed(0))
+    with torch.inference_mode():
+        exact = [math.sqrt(square) for square in squares.tolist()]
+        assert torch.equal(root(squares), torch.tensor(exact, dtype=torch.float64).to(dtype))
+        assert root(squares.sum()).shape == ()
+    assert root(squares.clone().requires_grad_()).requires_grad
 
 
 def test_torch_computes_by_the_set_that_every_processor_has() -> None:
