@@ -1,3 +1,3 @@
 """Parts that all rooms use: errors and their sources, arrays, random streams, readers of files."""
 
-__version__ = "0.3.0"
+__version__ = "0.4.0"
