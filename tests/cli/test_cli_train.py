@@ -29,7 +29,9 @@ def _train(*arguments: object):
 
 def test_everything_is_fitted_and_ends_in_a_table() -> None:
     ended = _train()
-    assert (ended.status, ended.err) == (0, "")
+    assert ended.status == 0, ended.err
+    assert "Fitting" in ended.err
+    assert "Fitting" not in ended.out
     names = {path.name for path in Path("runs/train").glob("*.safetensors")}
     assert names == {"one-0.safetensors", "one+dcc-0.safetensors", "one+dcc-1.safetensors"}
     rows = [line.split() for line in ended.out.splitlines()]
@@ -61,7 +63,7 @@ def test_the_same_again_fits_nothing_and_what_is_finished_is_shipped(
     assert card.read_bytes() == before
     assert models.checkpoint_path("one", 0).parent == tmp_path / "package"
     monkeypatch.setattr(Toy, "count", 149)
-    assert "one-0 is fitted again: samples" in _train("one").out
+    assert "one-0 is fitted again: samples" in _train("one").err
 
 
 def test_models_that_fail_are_told_and_change_the_status() -> None:
@@ -97,7 +99,7 @@ def test_missing_flights_are_collected_once_what_they_need_is_fitted(
     ended = _train("needy", "one", "--data", "flights")
     assert ended.status == 0, ended.err
     assert calls == [(Path("flights"), [pool], 0) for pool in ("nominal", "flown")]
-    assert "Collecting flown" in ended.out
+    assert "Collecting flown" in ended.err
     assert Path("runs/train/needy-0.safetensors").exists()
 
 

@@ -60,7 +60,7 @@ def command(
     """Fit models from wherever an earlier call left them; missing flights are collected first."""
     from faultpath.plugin.results import SafeConsole, drawn
 
-    console = SafeConsole()
+    console, notices = SafeConsole(), SafeConsole(stderr=True)
     if list_:
         values = {"names": names or None, "seed": seeds or None, "ship": ship or None}
         refuse_with("--list", **values, data=data, out=out, workers=workers)
@@ -80,10 +80,10 @@ def command(
         make_folder(place)  # before the flights: none are needed where nothing can be stored
     status = 0
     for jobs in stages(chosen):  # models whose data are flown with other models come after those
-        _collect(console, jobs, data, workers)
-        with _progress(console) as bar:
+        _collect(notices, jobs, data, workers)
+        with _progress(notices) as bar:
             whole = bar.add_task("Fitting", total=1.0, news="")
-            say = partial(console.print, markup=False, soft_wrap=True)
+            say = partial(notices.print, markup=False, soft_wrap=True)
 
             def show(done: float, news: str, bar: "Progress" = bar, task: "TaskID" = whole) -> None:
                 bar.update(task, completed=done, news=news)
