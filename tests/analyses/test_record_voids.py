@@ -71,8 +71,8 @@ def test_what_hangs_on_one_trial_is_open_and_what_does_not_is_decided():
 
 def test_how_scenes_with_a_failed_trial_end_is_not_said():
     scene = np.arange(SCENES)
-    made = audit((ends(scene >= 0, scene < 30), ends(scene >= 0)))
-    assert words(made).headline == (
+    result = audit((ends(scene >= 0, scene < 30), ends(scene >= 0)))
+    assert words(result).headline == (
         "No difference could show: in every scene that ran in both, both versions succeed."
     )
 
@@ -85,7 +85,8 @@ def test_a_failure_on_one_condition_costs_the_others_nothing():
     failing = audit(correct, (ends(scene >= 0, scene < 30), ends(scene >= 50)))
     for condition in (CORRECT, "observer"):
         one, two = (
-            next(e for e in made.effects if e.condition == condition) for made in (whole, failing)
+            next(e for e in result.effects if e.condition == condition)
+            for result in (whole, failing)
         )
         assert (one.value, one.interval, one.p_value, one.scenes) == (
             two.value,
@@ -101,12 +102,12 @@ def test_no_reversal_rests_on_a_condition_where_one_variant_fails_more_often():
     """Decided even with all that is open against it: who is ahead stands, but carries nothing."""
     stands = ends(np.arange(SCENES) < 90), ends(np.arange(SCENES) < 30)
     fails = ends(np.arange(SCENES) < 20, np.arange(SCENES) >= 92), ends(np.arange(SCENES) < 80)
-    made = audit(stands, fails)
-    shared = next(effect for effect in made.effects if effect.condition == SHARED)
+    result = audit(stands, fails)
+    shared = next(effect for effect in result.effects if effect.condition == SHARED)
     assert shared.sign == -1
     assert (shared.uneven, shared.leads) == (True, False)
-    assert made.changes[0].turn != "reversal"
-    assert "Do not choose" not in words(made).headline
+    assert result.changes[0].turn != "reversal"
+    assert "Do not choose" not in words(result).headline
 
 
 def test_what_is_missing_of_a_seed_that_repeats_another_is_open():
@@ -132,14 +133,14 @@ def test_a_pair_of_which_both_trials_failed_could_have_gone_either_way():
     scene = np.arange(60)
     neither = scene >= 40
     new, old = scene < 14, (scene >= 14) & (scene < 16)
-    made = audit((ends(new, neither), ends(old, neither)))
-    effect = made.effects[0]
+    result = audit((ends(new, neither), ends(old, neither)))
+    effect = result.effects[0]
     assert effect.missing is not None
     assert (effect.missing.against_pp, effect.missing.favour_pp) == pytest.approx(
         (-40 / 3, 160 / 3)
     )
     assert (effect.sign, effect.unsettled, effect.leads) == (0, True, False)
-    (said,) = [text for text in words(made).findings if "failed" in text]
+    (said,) = [text for text in words(result).findings if "failed" in text]
     assert "lies anywhere from −13.3 to +53.3 pp" in said
 
 
@@ -188,12 +189,12 @@ def test_trials_that_do_not_repeat_or_are_no_pairs_support_nothing(invalid):
         trials[-1] = replace(last, outcome=replace(last.outcome, initial_hash="another"))
     table, over = Trials.of(trials), conditions(CORRECT, "observer", SHARED)
     found = [] if invalid == "unpaired" else [SPOILS[invalid]]
-    made = decide(question(), facts(), over, table, found)
-    assert made.invalid == invalid
-    assert words(made).headline.startswith("No result: ")
-    assert not any(item.sign for item in (*made.effects, *made.changes))
-    assert not any(item.result.regions for item in (*made.break_even, *made.break_even_beta))
-    whole = " ".join((words(made).headline, *words(made).sentences, *answers(made).values()))
+    result = decide(question(), facts(), over, table, found)
+    assert result.invalid == invalid
+    assert words(result).headline.startswith("No result: ")
+    assert not any(item.sign for item in (*result.effects, *result.changes))
+    assert not any(item.result.regions for item in (*result.break_even, *result.break_even_beta))
+    whole = " ".join((words(result).headline, *words(result).sentences, *answers(result).values()))
     assert "ahead" not in whole
     assert "succeeds more often" not in whole
 
@@ -220,9 +221,9 @@ def mixed(stream: np.random.Generator) -> AuditResult:
 def test_a_break_even_frequency_holds_whatever_failed_trials_would_have_been():
     stream = np.random.default_rng(2)
     for _ in range(5):
-        made = mixed(stream)
-        (found,) = (each for each in made.break_even if each.condition == SHARED)
-        against = {each.condition: each.missing.against_pp for each in made.effects}
+        result = mixed(stream)
+        (found,) = (each for each in result.break_even if each.condition == SHARED)
+        against = {each.condition: each.missing.against_pp for each in result.effects}
         even = -against[CORRECT] / (against[SHARED] - against[CORRECT])
         (region,) = (each for each in found.result.regions if each.sign > 0)
         assert region.low > even

@@ -158,10 +158,10 @@ import faultpath, toy
 class Mine(toy.Toy):
     pass
 
-asked = {QUESTION!r}
-asked |= {{"progress": True, "scenes": 4}}
-named = faultpath.audit({TOY!r}, **asked | {{"workers": 2}})
-mine = faultpath.audit(Mine(), **asked | {{"workers": None}})
+question = {QUESTION!r}
+question |= {{"progress": True, "scenes": 4}}
+named = faultpath.audit({TOY!r}, **question | {{"workers": 2}})
+mine = faultpath.audit(Mine(), **question | {{"workers": None}})
 print(named.record.effects == mine.record.effects, mine.provenance.code.system_commit)
 """
 

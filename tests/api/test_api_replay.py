@@ -82,11 +82,11 @@ def test_a_trial_that_comes_out_otherwise_is_told_and_not_heard(folder) -> None:
     )
     changed = replace(source, trials=Trials.of(rows))
     trials = replay(changed, (SCENE,), ("shared", "observer"), trust=True).trials
-    differs = {each.address.condition: bool(each.deviation) for each in trials}
+    differs = {trial.address.condition: bool(trial.deviation) for trial in trials}
     assert differs == {"shared": True, "observer": False}
-    for each in trials:
-        assert ("time_s by up to 1" in str(each.deviation)) == bool(each.deviation)
-        assert bool(each.signals) != bool(each.deviation)
+    for trial in trials:
+        assert ("time_s by up to 1" in str(trial.deviation)) == bool(trial.deviation)
+        assert bool(trial.signals) != bool(trial.deviation)
 
 
 def test_only_scenes_and_conditions_of_a_run_that_can_be_built_are_run_again(folder) -> None:

@@ -81,8 +81,8 @@ def test_a_void_trial_leaves_its_scene_out_of_all_that_is_joined(published_run: 
         (table_4.cell("gru+dcc", condition), table_4.cell("gru", condition))
         for condition in ("reconstruction-only", "shared")
     ]
-    for found in together(run, *repaired):
-        assert found.n_scenes == SCENES - 2
+    for effect in together(run, *repaired):
+        assert effect.n_scenes == SCENES - 2
 
 
 def test_no_rule_knows_what_the_paper_reports(answers: Answers, published_run: Results) -> None:

@@ -61,10 +61,10 @@ def test_seeds_are_averaged_after_their_quantiles():
         values = generator("test-windows", "seeds", seed).normal(size=len(scenes))
         own = Measurement(recording=recording, quantity="position-error", subject="dki", seed=seed)
         table[own] = Measured(tuple(scenes), np.arange(len(scenes)), values)
-    found = median(tuple(table))(Results(cast(Any, None), table, ""))
-    assert found.per_seed == tuple(np.median(part.values) for part in table.values())
-    assert found.value == pytest.approx(np.mean(found.per_seed), abs=1e-8)
-    assert found.n_seeds == 3
+    errors = median(tuple(table))(Results(cast(Any, None), table, ""))
+    assert errors.per_seed == tuple(np.median(part.values) for part in table.values())
+    assert errors.value == pytest.approx(np.mean(errors.per_seed), abs=1e-8)
+    assert errors.n_seeds == 3
 
 
 def test_a_difference_is_paired_and_mirrors_when_the_variants_are_swapped():

@@ -1,4 +1,4 @@
-"""What the packages declare agrees with each other, with what they import, and with the release."""
+"""Declarations of the packages agree with each other, with imports, and with the release."""
 
 import ast
 import importlib.metadata

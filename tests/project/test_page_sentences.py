@@ -1,4 +1,4 @@
-"""What pages say beside their tables follows from results: typed sentences and written ones."""
+"""Sentences of pages beside their tables follow from results: typed sentences and written ones."""
 
 import json
 import re

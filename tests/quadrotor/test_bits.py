@@ -41,7 +41,7 @@ SETTINGS = {
 
 
 APPROXIMATED = {"sqrt", "rsqrt", "acos", "asin", "erf", "erfc", "erfinv"}
-"""What torch leaves to a library that begins with the processor's own approximation, or may."""
+"""Operations that torch leaves to a library, which may begin with the processor's approximation."""
 
 
 class Called(TorchDispatchMode):

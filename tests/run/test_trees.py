@@ -1,4 +1,4 @@
-"""What counts as the code of a trial: all that runs in one, as whole trees of sources."""
+"""The code of a trial counts as all that runs in one, as whole trees of sources."""
 
 import sys
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""What `faultpath init` writes runs, and its own test passes."""
+"""A system that `faultpath init` writes runs, and its own test passes."""
 
 import os
 import shlex

@@ -3,40 +3,22 @@
 import hashlib
 import json
 import re
-from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import product
 
 from faultpath.analyses.decide import primary_condition
 from faultpath.analyses.facts import ComparisonFacts
+from faultpath.analyses.judging_table import Address, Key, table_of, units_of
 from faultpath.analyses.model import AS_RUN, CORRECT, SHARED, Condition, title_of, where
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
 from faultpath.run.deliveries import unproven
 from faultpath.run.findings import ExtraTrials, Finding, MissingTrials, NoneFailed, SeveralTasks
-from faultpath.run.question import FEWEST_TRAININGS
 from faultpath.run.received.question import JudgeQuestion
 from faultpath.run.received.results import NO_OUTCOME, Received
 from faultpath.run.store.tables import FIXED
-from faultpath.run.trials import Trial, Trials
-from faultpath.system.outcome import Metric, Outcome, Status, failed_outcome
-
-Key = tuple[str, str]
-"""A trial within its variant and condition: its scene or task, and its label there."""
-Address = tuple[str, str, Key]
-"""Variant, condition and key."""
-
-
-@dataclass(frozen=True)
-class Units:
-    """Scenes or tasks, each with the labels of its trials."""
-
-    labels: Mapping[str, Collection[str]]
-    """All of them."""
-    compared: Mapping[str, Sequence[str]]
-    """Those that are compared, at most as many as seeds, in order."""
-    seeds: tuple[int, ...]
+from faultpath.run.trials import Trials
+from faultpath.system.outcome import Metric, Status
 
 
 @dataclass(frozen=True)
@@ -69,9 +51,9 @@ def pair_results(rows: Sequence[Received], request: JudgeQuestion) -> PairedResu
     ordered = sorted(set(names.values()), key=lambda name: (name == SHARED, name != CORRECT, name))
     _check_paired(received, ordered, request)
 
-    units = _units(received, request)
+    units = units_of(received, request)
     hashed = _hashed(rows)
-    trials, missing = _table(received, ordered, units, request, hashed)
+    trials, missing = table_of(received, ordered, units, request, hashed)
     conditions = tuple(
         Condition(name=name, title=title_of(name), readers=(), baseline_readers=())
         for name in ordered
@@ -198,78 +180,6 @@ def _hashed(rows: Sequence[Received]) -> bool:
             "the column, or take it out."
         )
     return bool(ended) and not bare
-
-
-def _units(trials: Iterable[Address], request: JudgeQuestion) -> Units:
-    """Return the trials compared of each scene or task; `UserError` where the question is of newly
-    trained models and trials have no seeds."""
-    labels: dict[str, dict[str, None]] = {}
-    for _, _, (unit, label) in trials:
-        labels.setdefault(unit, {})[label] = None
-    often = Counter(label for members in labels.values() for label in members)
-    sizes = Counter(len(members) for members in labels.values())
-    # As many trials of each as leave the most of all, and first those that most scenes have.
-    most = max(
-        sorted(sizes),
-        key=lambda size: size * sum(units for other, units in sizes.items() if other >= size),
-    )
-    compared = {
-        unit: sorted(sorted(members, key=lambda x: (-often[x], _in_order(x)))[:most], key=_in_order)
-        for unit, members in labels.items()
-    }
-    different = set(map(frozenset, compared.values()))
-    # Seeds that are the same everywhere are seeds; others only number the trials of a scene.
-    alike = len(different) == 1
-    if request.generalise == "models" and (not alike or len(min(different)) < FEWEST_TRAININGS):
-        raise UserError(
-            f"newly trained models need {FEWEST_TRAININGS} seeds or more, the same ones in every "
-            "scene: leave --generalise models out."
-        )
-    seeds = tuple(range(most))
-    numbers = {int(label) for label in min(different) if label.isdecimal() and len(label) < 19}
-    if alike and len(numbers) == most:  # `1` and `01` are two labels and one number
-        seeds = tuple(sorted(numbers))
-    return Units(labels, compared, seeds)
-
-
-def _table(
-    trials: Mapping[Address, Received],
-    conditions: Sequence[str],
-    units: Units,
-    request: JudgeQuestion,
-    hashed: bool,
-) -> tuple[Trials, dict[tuple[str, str], list[Key]]]:
-    """Return a row for each trial that should be there, and by variant and condition the keys of
-    those that are not."""
-    rows: list[Trial] = []
-    missing: dict[tuple[str, str], list[Key]] = {}
-    tasks = {unit: row.task for (_, _, (unit, _)), row in trials.items()}
-    ordered = sorted(units.labels, key=_in_order)
-    for condition, variant in product(conditions, (request.baseline, request.repair)):
-        for (at, seed), (index, unit) in product(enumerate(units.seeds), enumerate(ordered)):
-            labels = units.compared[unit][at : at + 1]
-            row = trials.get((variant, condition, (unit, labels[0]))) if labels else None
-            if row is None:
-                missing.setdefault((variant, condition), []).append((unit, "".join(labels)))
-            topology = tasks[unit] if request.cluster == "scene" else ""
-            outcome = _outcome(unit, row, hashed)
-            rows.append(Trial(variant, condition, seed, index, topology, outcome))
-    place = {condition: place for place, condition in enumerate(conditions)}
-    rows.sort(key=lambda row: (place[row.condition], row.variant, row.seed, row.scene_index))
-    return Trials.of(rows), missing
-
-
-def _outcome(scene: str, row: Received | None, hashed: bool) -> Outcome:
-    if row is None:
-        return failed_outcome(scene, "it is not among the results")
-    if row.status is Status.FAILED:
-        return failed_outcome(scene, row.error)
-    initial = row.initial if hashed else "none"
-    return Outcome(scene, row.status, row.time_s, initial, "none", "none", row.metrics)
-
-
-def _in_order(label: str) -> tuple[bool, int, str]:
-    return (not label.isdecimal(), int(label) if label.isdecimal() else 0, label)
 
 
 def _metrics(question: JudgeQuestion) -> dict[str, Metric]:

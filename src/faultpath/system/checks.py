@@ -135,8 +135,8 @@ def _declared(system: System, attribute: str, label: str) -> Any:
     except (Exception, SystemExit) as error:
         # An AttributeError without such an attribute in the class is no failed property.
         if not isinstance(error, AttributeError) or hasattr(type(system), attribute):
-            told = isinstance(error, UserError)
-            says = str(error) if told else f"`{attribute}` fails ({described(error)})"
+            ours = isinstance(error, UserError)
+            says = str(error) if ours else f"`{attribute}` fails ({described(error)})"
             mistake = SystemMistake(f"{label}: {says}")
             mistake.location = location(error)
             raise mistake from error

@@ -118,9 +118,8 @@ class ComposedSystem(LoopSystem):
             except SystemMistake as error:
                 raise SystemMistake(f"variant '{variant}': {error}") from None
             batch = Batch((f"{SCENE}0",), 0, self.control_dt_s)
-            first = next(
-                iter(Loop(self._interface, executable).execute(batch, cast("Any", recorder)))
-            )
+            loop = Loop(self._interface, executable)
+            first = next(iter(loop.execute(batch, cast("Any", recorder))))
             for world in first.state.worlds:
                 world.close()
         self._interface = self._declared(units, alternatives, plant.shapes | recorder.shapes)
@@ -193,8 +192,8 @@ class ComposedSystem(LoopSystem):
         known |= dict.fromkeys(alternatives.get(plant.action, (plant.action,)), "commanded")
         for module in modules:
             for port in sorted(module.ports):
-                if not {*feeds[port.channel]} & {*plant.senses, *plant.facts, *written}:
-                    there = list(dict.fromkeys((*plant.senses, *plant.facts, *written)))
+                there = list(dict.fromkeys((*plant.senses, *plant.facts, *written)))
+                if not {*feeds[port.channel]} & {*there}:
                     raise self._unread(module, port.channel, there)
             reads = {name for port in module.ports for name in feeds[port.channel]}
             if own := (reads & {*module.writes}) - {*known}:

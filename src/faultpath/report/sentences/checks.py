@@ -1,4 +1,4 @@
-"""What `check` and `trace` found, in words: what is wrong, where, and what to do."""
+"""Findings of `check` and `trace` in words: what is wrong, where, and what to do."""
 
 from faultpath.core.text import capital, listed
 from faultpath.interface import module_of

@@ -31,7 +31,7 @@ class Stopped:
 
     variant: str
     condition: str
-    """Of the user's fault; empty for runs without it."""
+    """Condition of the user's fault; empty for runs without it."""
     error: str
     in_trial: bool
     """Whether it came from within a trial, and breaks no rule that a check is named after."""
@@ -100,7 +100,7 @@ class TapFault:
     """`reads elsewhere`: its module wrote another value where all that it was handed was the same;
     `no effect`: it changed nothing but the reading."""
     error: str = ""
-    """What says that it was not delivered; empty where nothing was delivered at all."""
+    """Text that says that it was not delivered; empty where nothing was delivered at all."""
     other: Tap = ("", "")
     outputs: tuple[str, ...] = ()
     """Sources that its module writes: the one that changed, or all, of which none did; empty where
@@ -123,7 +123,7 @@ class NotFinite:
 
     variant: str
     condition: str
-    """Of the user's fault; empty without it."""
+    """Condition of the user's fault; empty without it."""
     source: str
     step: int
     reader: str
@@ -174,7 +174,7 @@ Problem: TypeAlias = (
     | Unproven
     | Unread
 )
-"""What is wrong, or may be."""
+"""A kind of what is wrong, or may be."""
 
 
 @dataclass(frozen=True)
@@ -237,9 +237,9 @@ class Checked:
 
     name: str
     summary: Summary | None = None
-    """What its line tells, where that is a number."""
+    """Number that its line tells, where it tells one."""
     failures: tuple[Problem, ...] = ()
     remarks: tuple[Problem, ...] = ()
-    """What may be a mistake and may be none."""
+    """Possible mistakes, which may be none."""
     unjudged: Unjudged = ""
     """Why nothing could be judged."""
