@@ -120,6 +120,20 @@ def test_lists_groups_and_names_are_what_they_should_be(
     assert sentence in refused(f"{label}{tmp_path / name}", tmp_path)
 
 
+@pytest.mark.parametrize("name", ["eval_info.json", "log.json", LM_EVAL])
+def test_a_column_that_a_layout_does_not_take_is_refused(name: str, tmp_path: Path) -> None:
+    path = written(tmp_path / name, 1)
+    label = "old=" if name in ("eval_info.json", LM_EVAL) else ""
+    sentence = refused(f"{label}{path}", tmp_path, columns={"scene": "doc_id"})
+    assert "has its own columns; leave out --column scene=" in sentence
+
+
+def test_scenes_of_two_tasks_that_would_have_one_name_are_refused(tmp_path: Path) -> None:
+    rows = "variant,task,scene,success\nold,a/b,c,1\nnew,a,b/c,1\n"
+    (tmp_path / "a.csv").write_text(rows)
+    assert "would be called 'a/b/c', as scene 'c' of" in refused(tmp_path / "a.csv", tmp_path)
+
+
 @pytest.mark.parametrize("separator", ["\u2028", "\x85", "\x1e"])
 def test_lines_of_json_end_at_line_feeds_alone(separator: str, tmp_path: Path) -> None:
     trials = [(variant, n, won) for variant in ("old", "new") for n, won in enumerate(WON)]

@@ -127,8 +127,14 @@ def _by_address(
     rows: Iterable[Received], names: Mapping[str, str], question: JudgeQuestion
 ) -> dict[Address, Received]:
     trials: dict[Address, Received] = {}
+    scenes: dict[str, tuple[str, str]] = {}
     for row in rows:
         scene = f"{row.task}/{row.scene}" if row.task else row.scene
+        if (other := scenes.setdefault(scene, (row.task, row.scene))) != (row.task, row.scene):
+            raise UserError(
+                f"{row.where}: scene '{row.scene}' of task '{row.task}' would be called '{scene}', "
+                f"as scene '{other[1]}' of task '{other[0]}': name one of them differently."
+            )
         key = (scene, row.seed)
         if question.cluster == "task":
             key = (row.task, f"{row.scene}, seed {row.seed}" if row.seed else row.scene)

@@ -127,6 +127,7 @@ def _cells(path: Path, data: bytes, question: JudgeQuestion, label: str) -> Cell
         case ".parquet":
             yield from _named(((f", row {n}", row) for n, row in read_rows(data)), question)
         case ".eval":
+            _check_columns(question, "a log of Inspect", ("success",))
             yield from inspect_cells(unpacked_log(path), question, label)
         case ".jsonl":
             lines = text_of(data).split("\n")  # other line separators may stand in a text
@@ -136,17 +137,27 @@ def _cells(path: Path, data: bytes, question: JudgeQuestion, label: str) -> Cell
                 if line.strip()
             ]
             if rows and "doc_id" in rows[0][1]:
+                _check_columns(question, "a file of lm-eval", ("success",))
                 yield from lm_eval_cells(path, rows, question)
             else:
                 yield from _named(iter(rows), question)
         case ".json":
             content = _object(data)
             if "eval" in content:
+                _check_columns(question, "a log of Inspect", ("success",))
                 yield from inspect_cells(content, question, label)
             else:
+                if not content.keys().isdisjoint(("per_task", "per_episode")):
+                    _check_columns(question, "a file of LeRobot", ())
                 yield from lerobot_cells(content)
         case _:
             raise Misread("is of no kind that is read; give .csv, .parquet, .json, .jsonl or .eval")
+
+
+def _check_columns(question: JudgeQuestion, kind: str, taken: Sequence[str]) -> None:
+    """Raise `Misread` for a column that is named and that this kind of file does not take."""
+    if other := [name for name in question.columns if name not in taken]:
+        raise Misread(f"is {kind}, which has its own columns; leave out --column {other[0]}=...")
 
 
 def _object(data: bytes, line: int | None = None) -> dict[str, Any]:
