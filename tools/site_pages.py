@@ -98,7 +98,7 @@ SIDE_BAR: Mapping[str, str] = {
 }
 """Pages of the side bar, by their heading."""
 BELOW: Mapping[str, str] = {
-    "install": "release-notes",
+    "install": "release-notes releasing",
     "torch": "repairs",
     "statistics": "statistics-check",
     "gallery": "rotorpy do-mpc motulator basilisk wpilib openpilot stable-worldmodel lerobot "

@@ -68,9 +68,10 @@ def test_a_part_and_a_library_of_ones_own_are_audited_and_reported():
 
 @pytest.mark.slow
 def test_workers_build_the_part_too_and_what_they_find_is_shown_once():
+    own = {"predictor": "mine.py:Heavy", "fault": "calibration=0.1@predictor"}
     with warnings.catch_warnings():
         warnings.simplefilter("default", Notice)
-        ended = _audit("zero-wind", "mine.py:wind", predictor="mine.py:Heavy", workers=2, scenes=1)
+        ended = _audit("zero-wind", "mine.py:wind", **own, workers=2, scenes=1)
     assert ended.status == 0, ended.err
     (line,) = [line for line in ended.err.splitlines() if line.startswith("faultpath: ")]
     assert line.startswith("faultpath: The predictor Heavy runs on the portable path")

@@ -210,7 +210,7 @@ def test_a_trace_says_who_read_what_of_which_step() -> None:
     assert reads[1, "position", "observer.seen"].valid_step == 0
     assert reads[1, "position", "observer.seen"].source == "place"
     assert reads[1, "action", "line.motor"].valid_step == 1
-    assert reads[1, "clearance", "planner.cost"].asks == 1
+    assert reads[1, "clearance", "planner.cost"].requests == 1
 
 
 def test_the_interface_follows_from_the_ports() -> None:

@@ -70,8 +70,8 @@ def test_a_sound_system_passes(name, library):
 
 def test_where_no_trial_ends_that_check_fails_and_names_the_one_to_see():
     trials, *others = check(broken="shape").checks
-    assert {other.says for other in others} == {"no variant ran to its end"}
-    assert (trials.status, trials.says) == ("failed", "none did; see *shape and unit*")
+    assert {other.summary for other in others} == {"no variant ran to its end"}
+    assert (trials.status, trials.summary) == ("failed", "none did; see *shape and unit*")
     (failure,) = trials.failures
     assert failure.startswith("No trial of any variant ended: correct first what *shape and unit*")
 
@@ -103,7 +103,7 @@ def test_a_fault_that_alters_another_tap_is_seen_without_the_taps_own_counts(mon
 
 def test_an_error_is_told_with_its_line_and_an_if_on_a_reading_with_what_to_take():
     trials = check(broken="raises").checks[0]
-    assert (trials.status, trials.says) == ("failed", "none did")
+    assert (trials.status, trials.summary) == ("failed", "none did")
     (failure,) = trials.failures
     assert re.search(
         r"ValueError: no air \(\S*broken\.py, line \d+\) in scene 'w2'; correct the system", failure
@@ -211,7 +211,7 @@ def test_a_system_that_takes_one_scene_at_a_time_runs_all_that_are_asked_for():
     report = check(broken="one at a time")
     assert failed(report) == {}
     assert len(report.scenes) == 4
-    assert report.checks[0].says.startswith("8 ")
+    assert report.checks[0].summary.startswith("8 ")
 
 
 def test_a_reader_that_ignores_its_reading_is_remarked_and_not_failed():

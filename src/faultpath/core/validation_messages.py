@@ -53,7 +53,7 @@ class Misfit:
 
     location: tuple[str | int, ...]
     """Keys and indices on the way to it."""
-    says: str
+    message: str
     """The mistake and what is allowed, to follow a colon."""
     names_it: bool = False
     """Whether the words name the location themselves."""
@@ -65,7 +65,7 @@ class Misfit:
         return printable("".join(steps).removeprefix("."))
 
     def __str__(self) -> str:
-        return self.says if self.names_it or not self.where else f"{self.where}: {self.says}"
+        return self.message if self.names_it or not self.where else f"{self.where}: {self.message}"
 
 
 def misfit_of(error: "ValidationError", model: "type[BaseModel] | None" = None) -> Misfit:

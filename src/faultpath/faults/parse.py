@@ -172,7 +172,7 @@ def _of_kind(
     except ValidationError as error:
         problem = misfit_of(error)
         raise UserError(
-            f"'{kind}': {problem.where or kind} {problem.says}; correct the value"
+            f"'{kind}': {problem.where or kind} {problem.message}; correct the value"
         ) from None
     return tuple(
         Fault(channel=channel, intervention=intervention) for channel in channels[part.name]

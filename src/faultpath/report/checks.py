@@ -21,7 +21,7 @@ class Check(Result):
     """One thing that was looked at."""
 
     name: str
-    says: str
+    summary: str
     """One line on what was seen, or on why nothing could be."""
     failures: tuple[str, ...] = ()
     """A sentence each: what is wrong, where, and what to do."""
@@ -55,7 +55,7 @@ def report_of(result: SystemCheck[Checked]) -> Report:
     checks = tuple(
         Check(
             name=check.name,
-            says=words.summary(check),
+            summary=words.summary(check),
             failures=tuple(map(words.describe, check.failures)),
             remarks=tuple(map(words.describe, check.remarks)),
             judged=not check.unjudged,
@@ -83,13 +83,13 @@ def check_lines(report: Report) -> RenderableType:
     unjudged: dict[str, list[str]] = {}
     for check in report.checks:
         if check.status == "not judged" and not check.remarks:
-            unjudged.setdefault(check.says, []).append(check.name)
+            unjudged.setdefault(check.summary, []).append(check.name)
             continue
-        lines.append(_line(check.status, f"{check.name}: {check.says}"))
+        lines.append(_line(check.status, f"{check.name}: {check.summary}"))
         texts = (*check.failures, *(f"Remark: {remark}" for remark in check.remarks))
         lines += (Padding(Text(f"- {text}"), (0, 0, 0, 2)) for text in texts)
     lines += [
-        _line("not judged", f"{', '.join(names)}: {says}") for says, names in unjudged.items()
+        _line("not judged", f"{', '.join(names)}: {summary}") for summary, names in unjudged.items()
     ]
     failed = sum(check.status == "failed" for check in report.checks)
     remarks = sum(len(check.remarks) for check in report.checks)

@@ -79,8 +79,8 @@ def holds_when_shared(result: AuditResult) -> Answer:
     return Answer(effect is not None and effect.leads and effect.sign > 0, text)
 
 
-def junit(results: Sequence[AuditResult], asks: Sequence[str]) -> str:
-    """Return JUnit's XML: a suite for each result, a case for its trials and each of `asks`."""
+def junit(results: Sequence[AuditResult], gates: Sequence[str]) -> str:
+    """Return JUnit's XML: a suite for each result, a case for its trials and each of `gates`."""
     root = ElementTree.Element("testsuites", name="faultpath")
     for result in results:
         question, text = result.question, words(result)
@@ -91,9 +91,9 @@ def junit(results: Sequence[AuditResult], asks: Sequence[str]) -> str:
             "trials-ran": f"{failed} trials failed or are missing." if failed else "",
             "result": text.headline if result.invalid else "",
         }
-        for ask in asks:
-            answer = found(result, ask)
-            cases[f"no-{ask}"] = answer.reason if answer else ""
+        for gate in gates:
+            answer = found(result, gate)
+            cases[f"no-{gate}"] = answer.reason if answer else ""
         suite = ElementTree.SubElement(
             root,
             "testsuite",
@@ -111,16 +111,16 @@ def junit(results: Sequence[AuditResult], asks: Sequence[str]) -> str:
     return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
 
 
-def summary(results: Sequence[AuditResult], asks: Sequence[str]) -> str:
+def summary(results: Sequence[AuditResult], gates: Sequence[str]) -> str:
     """Return results as Markdown: a headline, what a build fails for, answers, tables."""
     parts: list[str] = []
     for result in results:
         text = words(result)
         parts.append(f"### {markdown(text.headline)}")
-        gates = {ask: found(result, ask) for ask in asks}
+        answered = {gate: found(result, gate) for gate in gates}
         marks = [
             f"- **{'fails' if answer else 'passes'}** `{name}`: {markdown(answer.reason)}"
-            for name, answer in gates.items()
+            for name, answer in answered.items()
         ]
         parts += ["\n".join(marks)] if marks else []
         parts += [f"**{label}.** {markdown(answer)}" for label, answer in answers(result).items()]

@@ -63,7 +63,7 @@ def ask(model: type[_Question], fields: Mapping[str, object], command: bool = Fa
         wrong = misfit_of(error, model)
         first = str(wrong.location[0]) if wrong.location else ""
         where = flag(model, first) if command and first in model.model_fields else wrong.where
-        raise UserError(f"{where}: {wrong.says}.") from None
+        raise UserError(f"{where}: {wrong.message}.") from None
 
 
 def flag(model: type[UserQuestion], name: str) -> str:

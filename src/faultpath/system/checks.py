@@ -136,8 +136,8 @@ def _declared(system: System, attribute: str, label: str) -> Any:
         # An AttributeError without such an attribute in the class is no failed property.
         if not isinstance(error, AttributeError) or hasattr(type(system), attribute):
             ours = isinstance(error, UserError)
-            says = str(error) if ours else f"`{attribute}` fails ({described(error)})"
-            mistake = SystemMistake(f"{label}: {says}")
+            reason = str(error) if ours else f"`{attribute}` fails ({described(error)})"
+            mistake = SystemMistake(f"{label}: {reason}")
             mistake.location = location(error)
             raise mistake from error
         value = None

@@ -70,10 +70,10 @@ class Option:
         except PydanticSchemaGenerationError:
             return text  # a type of the system's own, which reads the text itself
         except ValidationError as error:
-            says = misfit_of(error).says
+            reason = misfit_of(error).message
         except ValueError as error:
-            says = f"must be {error}"
-        raise UserError(f"{system} cannot have the {self.name} '{text}': it {says}.")
+            reason = f"must be {error}"
+        raise UserError(f"{system} cannot have the {self.name} '{text}': it {reason}.")
 
 
 class Offered:

@@ -32,8 +32,8 @@ _Number = TypeVar("_Number", int, float)
 class Misread(ValueError):
     """Data that cannot be read; the message follows a colon. `line`, where it is known."""
 
-    def __init__(self, says: str, line: int | None = None) -> None:
-        super().__init__(says)
+    def __init__(self, message: str, line: int | None = None) -> None:
+        super().__init__(message)
         self.line = line
 
     def at(self, where: object) -> str:

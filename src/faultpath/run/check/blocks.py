@@ -221,7 +221,7 @@ def gap_of(first: RecordedBlock, again: RecordedBlock) -> float:
 
 
 @dataclass
-class Seen:
+class CheckRuns:
     """The runs of a check."""
 
     system: System
@@ -230,25 +230,25 @@ class Seen:
     seed: int
     apart: bool
     """Whether runs were repeated in processes of their own."""
-    runs: dict[tuple[str, str, tuple[str, str]], RecordedBlock] = field(
+    recorded: dict[tuple[str, str, tuple[str, str]], RecordedBlock] = field(
         default_factory=dict[tuple[str, str, tuple[str, str]], RecordedBlock]
     )
     """By variant, why it was run, and the tap that was faulted alone."""
 
-    def of(self, variant: str, why: str, tap: tuple[str, str] = ("", "")) -> RecordedBlock:
+    def get(self, variant: str, why: str, tap: tuple[str, str] = ("", "")) -> RecordedBlock:
         """Return what was recorded of a run; nothing where there was none."""
-        return self.runs.get((variant, why, tap), RecordedBlock())
+        return self.recorded.get((variant, why, tap), RecordedBlock())
 
     def firsts(self) -> Iterator[tuple[str, RecordedBlock]]:
         """Yield the first run, under correct inputs, of each variant that came to its end."""
         for variant in self.variants:
-            run = self.of(variant.name, "first")
+            run = self.get(variant.name, "first")
             if run.outcomes:
                 yield variant.name, run
 
     def under(self) -> Iterator[tuple[str, str, RecordedBlock]]:
         """Yield the runs under the user's fault, each with its variant and condition."""
-        for (variant, why, _), run in self.runs.items():
+        for (variant, why, _), run in self.recorded.items():
             if why.startswith(UNDER):
                 yield variant, condition_of(why), run
 
@@ -258,7 +258,7 @@ class Seen:
 
     def difference(self, variant: str, why: str, base: str = "first") -> Difference | None:
         """Return how a run of a variant differs from its first one; `None` where it does not."""
-        first, again = self.of(variant, base), self.of(variant, why)
+        first, again = self.get(variant, base), self.get(variant, why)
         if error := again.error or first.error:
             return Difference(error=error)
         if not again.outcomes:

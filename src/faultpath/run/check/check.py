@@ -11,7 +11,14 @@ from faultpath.core.results import Result
 from faultpath.core.text import unknown
 from faultpath.faults import AnyIntervention, Erase, Fault, Offset, Scale, resolve
 from faultpath.faults import Sequence as InTurn
-from faultpath.run.check.blocks import UNDER, BlockSpec, RecordedBlock, Seen, coarsest, run_blocks
+from faultpath.run.check.blocks import (
+    UNDER,
+    BlockSpec,
+    CheckRuns,
+    RecordedBlock,
+    coarsest,
+    run_blocks,
+)
 from faultpath.run.check.delivery import HELD, MOVED, reader_at, unanswered
 from faultpath.run.check.judging import judged
 from faultpath.run.check.reads import Read
@@ -78,31 +85,31 @@ def run_checks(
     )
     variants = chosen_variants(system, question.variants)
     workers = (2 if system.parallel else 1) if question.workers is None else question.workers
-    seen = Seen(system, variants, scenes, question.seed, workers > 0)
+    runs = CheckRuns(system, variants, scenes, question.seed, workers > 0)
     built = Built.of(system, spec, library.name)
 
     def run(blocks: Sequence[BlockSpec], workers: int = workers) -> None:
-        known = len(seen.runs) + len(blocks) if seen.runs else None
+        known = len(runs.recorded) + len(blocks) if runs.recorded else None
 
         def handle_reply(block: BlockSpec, result: RecordedBlock) -> None:
-            seen.runs[block.treatment.variant, block.why, block.tap] = result
-            note(len(seen.runs), known)
+            runs.recorded[block.treatment.variant, block.why, block.tap] = result
+            note(len(runs.recorded), known)
 
         with local(workers) as executor:  # new processes: they share nothing with those before
             run_blocks(executor, built, blocks, handle_reply)
 
-    run([BlockSpec(_treatment(seen, variant.name, {}), scenes, "first") for variant in variants])
-    again = [block for name, first in seen.firsts() for block in _again(seen, name, first)]
+    run([BlockSpec(_treatment(runs, variant.name, {}), scenes, "first") for variant in variants])
+    again = [block for name, first in runs.firsts() for block in _again(runs, name, first)]
     for where, faults in conditions.items():
-        for name in (name for name, _ in seen.firsts() if faults[name]):
-            treatment = Treatment(variant=name, faults=tuple(faults[name]), seed=seen.seed)
+        for name in (name for name, _ in runs.firsts() if faults[name]):
+            treatment = Treatment(variant=name, faults=tuple(faults[name]), seed=runs.seed)
             again.append(BlockSpec(treatment, scenes, f"{UNDER}{where}"))
     run(again)
-    if doubts := list(_doubts(seen)):
+    if doubts := list(_doubts(runs)):
         run(doubts)
-    for name in seen.unsteady() if seen.apart else ():
+    for name in runs.unsteady() if runs.apart else ():
         for whys in (("alone",), ("anew", "repeated")):
-            run([BlockSpec(_treatment(seen, name, {}), scenes, why) for why in whys], workers=1)
+            run([BlockSpec(_treatment(runs, name, {}), scenes, why) for why in whys], workers=1)
     return SystemCheck[Checked](
         system=spec.name,
         options=spec.options,
@@ -112,7 +119,7 @@ def run_checks(
         of=len(ids),
         seed=question.seed,
         fault=question.fault and str(question.fault),
-        checks=judged(seen),
+        checks=judged(runs),
     )
 
 
@@ -127,36 +134,36 @@ def chosen_variants(system: System, names: Sequence[str]) -> tuple[Variant, ...]
     return tuple(every[name] for name in dict.fromkeys(chosen))
 
 
-def _again(seen: Seen, variant: str, first: RecordedBlock) -> Iterator[BlockSpec]:
+def _again(runs: CheckRuns, variant: str, first: RecordedBlock) -> Iterator[BlockSpec]:
     """Yield what is run of a variant beside its first run."""
-    yield BlockSpec(_treatment(seen, variant, {}), seen.scenes, "again", second=seen.apart)
-    if len(seen.scenes) > 1:
-        yield BlockSpec(_treatment(seen, variant, {}), seen.scenes[::-2], "part")
+    yield BlockSpec(_treatment(runs, variant, {}), runs.scenes, "again", second=runs.apart)
+    if len(runs.scenes) > 1:
+        yield BlockSpec(_treatment(runs, variant, {}), runs.scenes[::-2], "part")
     floats = _floats(first)
     for channel, _ in Counter(channel for channel, _ in floats).most_common(1):
         nudged = {tap: Scale(factor=1.05) for tap in floats if tap[0] == channel}
-        yield BlockSpec(_treatment(seen, variant, nudged), seen.scenes, "faulted")
+        yield BlockSpec(_treatment(runs, variant, nudged), runs.scenes, "faulted")
     for tap, read in _begun(first).items():
-        alone = _treatment(seen, variant, {tap: _altering(read)})
-        yield BlockSpec(alone, seen.scenes, "tap", read.step + _AFTER, tap)
+        alone = _treatment(runs, variant, {tap: _altering(read)})
+        yield BlockSpec(alone, runs.scenes, "tap", read.step + _AFTER, tap)
 
 
-def _doubts(seen: Seen) -> Iterator[BlockSpec]:
+def _doubts(runs: CheckRuns) -> Iterator[BlockSpec]:
     """Yield what settles doubts: how far rounding goes, where scenes differ by those beside them;
     and whether a reader that answers no fault has its values from elsewhere. It is handed
     constants, first alone, and then while all that others read is faulted."""
-    for variant, first in seen.firsts():
+    for variant, first in runs.firsts():
         floats = _floats(first)
-        if floats and seen.difference(variant, "part") and not seen.difference(variant, "again"):
+        if floats and runs.difference(variant, "part") and not runs.difference(variant, "again"):
             nudged = dict.fromkeys(floats, Scale(factor=1.0 + 4.0 * coarsest(first)))
-            yield BlockSpec(_treatment(seen, variant, nudged), seen.scenes, "rounded")
-    silent = ((name, *reader_at(seen, name, tap)) for name, tap in unanswered(seen))
-    for variant, taps, writes in dict.fromkeys(silent) if not seen.unsteady() else ():
-        begun = _begun(seen.of(variant, "first"))
+            yield BlockSpec(_treatment(runs, variant, nudged), runs.scenes, "rounded")
+    silent = ((name, *reader_at(runs, name, tap)) for name, tap in unanswered(runs))
+    for variant, taps, writes in dict.fromkeys(silent) if not runs.unsteady() else ():
+        begun = _begun(runs.get(variant, "first"))
         constants = {tap: Erase(default=read.low) for tap, read in begun.items() if tap in taps}
         moved = {tap: _altering(read) for tap, read in begun.items()} | constants
         for why, doing in ((HELD, constants), (MOVED, moved)) if writes else ():
-            yield BlockSpec(_treatment(seen, variant, doing), seen.scenes, why, tap=min(taps))
+            yield BlockSpec(_treatment(runs, variant, doing), runs.scenes, why, tap=min(taps))
 
 
 def _begun(run: RecordedBlock) -> dict[tuple[str, str], Read]:
@@ -181,13 +188,13 @@ def _altering(read: Read) -> AnyIntervention:
 
 
 def _treatment(
-    seen: Seen, variant: str, doing: Mapping[tuple[str, str], AnyIntervention]
+    runs: CheckRuns, variant: str, doing: Mapping[tuple[str, str], AnyIntervention]
 ) -> Treatment:
     """Return the treatment of a variant in which something is done at some taps."""
     faults = (
         Fault(channel=channel, intervention=what, readers=(reader,))
         for (channel, reader), what in doing.items()
     )
-    present = seen.system.variants[variant].readers
-    resolved = resolve(faults, seen.system.interface, present)
-    return Treatment(variant=variant, faults=resolved, seed=seen.seed)
+    present = runs.system.variants[variant].readers
+    resolved = resolve(faults, runs.system.interface, present)
+    return Treatment(variant=variant, faults=resolved, seed=runs.seed)

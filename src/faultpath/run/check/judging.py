@@ -6,7 +6,7 @@ from dataclasses import replace
 from itertools import combinations
 
 from faultpath.loop import Module
-from faultpath.run.check.blocks import TRIALS, Seen, coarsest, condition_of, gap_of
+from faultpath.run.check.blocks import TRIALS, CheckRuns, coarsest, condition_of, gap_of
 from faultpath.run.check.delivery import HELD, MOVED, delivery
 from faultpath.run.check.results import (
     Checked,
@@ -44,9 +44,9 @@ _FAR = 100.0
 """A reading beyond this multiple of the typical magnitude is in another unit."""
 
 
-def judged(seen: Seen) -> tuple[Checked, ...]:
+def judged(runs: CheckRuns) -> tuple[Checked, ...]:
     """Judge all that was seen."""
-    judges: dict[str, Callable[[str, Seen], Checked]] = {
+    judges: dict[str, Callable[[str, CheckRuns], Checked]] = {
         "determinism": _determinism,
         "scene independence": _independence,
         "pairing": _pairing,
@@ -55,20 +55,20 @@ def judged(seen: Seen) -> tuple[Checked, ...]:
         "shape and unit": _readings,
         "data files": lambda name, _: Checked(name),
     }
-    outcomes = {name: run.outcomes for name, run in seen.firsts()}
+    outcomes = {name: run.outcomes for name, run in runs.firsts()}
     successes = tuple(
         (name, sum(row.status == "success" for row in rows), len(rows))
         for name, rows in outcomes.items()
     )
-    ends = Ends(successes, sum(len(run.outcomes) for _, _, run in seen.under()))
+    ends = Ends(successes, sum(len(run.outcomes) for _, _, run in runs.under()))
     checks = [Checked(TRIALS, ends, remarks=without_room(outcomes))]
     for name, judge in judges.items():
-        checks.append(judge(name, seen) if outcomes else Checked(name, unjudged="none ended"))
+        checks.append(judge(name, runs) if outcomes else Checked(name, unjudged="none ended"))
     for at, check in enumerate(checks):
         # Backwards: of several runs with the same error the first one names it.
         stopped = {
             run.error: Stopped(variant, condition_of(why), run.error, check.name == TRIALS)
-            for (variant, why, _), run in reversed(seen.runs.items())
+            for (variant, why, _), run in reversed(runs.recorded.items())
             if run.fails == check.name and why not in ("tap", HELD, MOVED)
         }
         checks[at] = replace(check, failures=(*stopped.values(), *check.failures))
@@ -98,30 +98,30 @@ def without_room(outcomes: Mapping[str, Sequence[Outcome]]) -> tuple[NoRoom, ...
     return tuple(remarks)
 
 
-def _determinism(name: str, seen: Seen) -> Checked:
+def _determinism(name: str, runs: CheckRuns) -> Checked:
     """Check that the same scenes twice give the same bits."""
     failures = list[Problem]()
-    for variant in seen.unsteady():
-        between = seen.difference(variant, "anew", "alone") is not None
-        within = seen.difference(variant, "repeated", "anew") is not None
-        again = seen.difference(variant, "again")
+    for variant in runs.unsteady():
+        between = runs.difference(variant, "anew", "alone") is not None
+        within = runs.difference(variant, "repeated", "anew") is not None
+        again = runs.difference(variant, "again")
         assert again is not None
-        failures.append(Unsteady(variant, again, (between, within) if seen.apart else None))
-    return Checked(name, Repeated(seen.apart), tuple(failures))
+        failures.append(Unsteady(variant, again, (between, within) if runs.apart else None))
+    return Checked(name, Repeated(runs.apart), tuple(failures))
 
 
-def _independence(name: str, seen: Seen) -> Checked:
+def _independence(name: str, runs: CheckRuns) -> Checked:
     """Check that a scene's result depends neither on the others nor on their order."""
-    if seen.unsteady():
+    if runs.unsteady():
         return Checked(name, unjudged="order of unsteady")
-    if len(seen.scenes) < 2:
+    if len(runs.scenes) < 2:
         return Checked(name, unjudged="one scene")
     failures, remarks = list[OrderMatters](), list[OrderMatters]()
-    for variant, first in seen.firsts():
-        difference = seen.difference(variant, "part")
+    for variant, first in runs.firsts():
+        difference = runs.difference(variant, "part")
         if difference is None:
             continue
-        gap, rounding = (gap_of(first, seen.of(variant, why)) for why in ("part", "rounded"))
+        gap, rounding = (gap_of(first, runs.get(variant, why)) for why in ("part", "rounded"))
         if gap > _SEVERAL * max(rounding, coarsest(first)):
             failures.append(OrderMatters(variant, difference, gap, "dependence"))
         elif math.isinf(gap):
@@ -137,17 +137,17 @@ def _independence(name: str, seen: Seen) -> Checked:
     )
 
 
-def _pairing(name: str, seen: Seen) -> Checked:
+def _pairing(name: str, runs: CheckRuns) -> Checked:
     """Check that two treatments meet the same conditions in each scene."""
-    if seen.unsteady():
+    if runs.unsteady():
         return Checked(name, unjudged="pairs of unsteady")
-    firsts = list(seen.firsts())
+    firsts = list(runs.firsts())
     groups = [((variant, "correct inputs"), run) for variant, run in firsts]
-    faulted = ((variant, seen.of(variant, "faulted")) for variant, _ in firsts)
+    faulted = ((variant, runs.get(variant, "faulted")) for variant, _ in firsts)
     groups += [((variant, "a fault"), run) for variant, run in faulted if run.outcomes]
     (one, base), *others = groups
     unpaired = [
-        Unpaired(first=one, second=two, scene=a.scene, seed=seen.seed, differences=causes)
+        Unpaired(first=one, second=two, scene=a.scene, seed=runs.seed, differences=causes)
         for two, run in others
         for a, b in zip(base.outcomes, run.outcomes, strict=True)
         if (causes := unlike(a, b))
@@ -156,11 +156,11 @@ def _pairing(name: str, seen: Seen) -> Checked:
     return Checked(name, Compared(len(groups)), (*Unpaired.first_of(unpaired), *unproven(met)))
 
 
-def _reads(name: str, seen: Seen) -> Checked:
+def _reads(name: str, runs: CheckRuns) -> Checked:
     """Check that what is declared to be read is read."""
-    counts = ((variant, count) for variant, run in seen.firsts() for count in run.counts)
-    taps = sum(len({read.tap for read in run.reads}) for _, run in seen.firsts())
-    remarks = other_names(seen.system, [variant for variant, _ in seen.firsts()])
+    counts = ((variant, count) for variant, run in runs.firsts() for count in run.counts)
+    taps = sum(len({read.tap for read in run.reads}) for _, run in runs.firsts())
+    remarks = other_names(runs.system, [variant for variant, _ in runs.firsts()])
     return Checked(name, Reads(taps), unread(counts), remarks)
 
 
@@ -189,12 +189,12 @@ def _alone(modules: Sequence[Module], others: Sequence[Module]) -> list[Module]:
     return [module for module in modules if module.name not in names]
 
 
-def _readings(name: str, seen: Seen) -> Checked:
+def _readings(name: str, runs: CheckRuns) -> Checked:
     """Check that sources give finite numbers of their unit; taps refuse other shapes themselves."""
     failures = list[Problem]()
-    firsts = [(variant, "", run) for variant, run in seen.firsts()]
+    firsts = [(variant, "", run) for variant, run in runs.firsts()]
     lost: dict[str, NotFinite] = {}
-    for variant, condition, run in (*firsts, *seen.under()):
+    for variant, condition, run in (*firsts, *runs.under()):
         for read in run.reads:
             if read.lost:
                 at = read.source, read.step, read.reader, read.lost
@@ -208,7 +208,7 @@ def _readings(name: str, seen: Seen) -> Checked:
         if read.valid_step >= 0:  # `before`, its value before the first step, is always a float
             kinds.setdefault(read.source, set()).add(read.dtype)
     shown: list[tuple[str, float, float, str]] = []
-    for source in seen.system.interface.sources:
+    for source in runs.system.interface.sources:
         low, high = spans.get(source.name, (math.inf, -math.inf))
         if low > high:
             continue

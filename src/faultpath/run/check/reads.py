@@ -33,7 +33,7 @@ class Read:
     """Step of the reading: before `step` for what is late, held or read of the past; -1 is what
     the source held before the first step."""
     scenes: Sequence[str]
-    asks: int = 0
+    requests: int = 0
     """Answers that the reader got of a query."""
     dtype: str = ""
     low: float = math.inf
@@ -107,7 +107,7 @@ class ReadLog(DeliveryListener):
         self, tap: Tap, query: Query, step: int, request: Any, answer: Any, got: Any
     ) -> None:
         read = self._reads[step, tap.channel, tap.reader]
-        read.asks += 1
+        read.requests += 1
         read.take(to_numpy(query.value(answer)), to_numpy(query.value(got)))
 
     def reads(self) -> tuple[Read, ...]:

@@ -30,7 +30,7 @@ class TracedRead(Result):
     source: str
     valid_step: int
     """Step of the reading, as that of `Read`."""
-    asks: int = 0
+    requests: int = 0
     """Answers that the reader got of a query."""
     altered_by: tuple[str, ...] = ()
     """Faults at the tap, where what was delivered differs from the reading."""
@@ -143,7 +143,7 @@ def trace_system(system: System, spec: SystemSpec, question: TraceQuestion) -> T
                 channel=read.channel,
                 source=read.source,
                 valid_step=read.valid_step,
-                asks=read.asks,
+                requests=read.requests,
                 altered_by=(words[read.tap],) if read.altered else (),
             )
             for read in run.reads
