@@ -4,10 +4,11 @@ import re
 
 import numpy as np
 import pytest
-from map_toys import Seen, alike, concluded, differences, grown, record, reversal
+from map_toys import FACTS, Seen, alike, concluded, differences, grown, record, reversal
 from outcome_tables import SPOILS
 from pydantic import ValidationError
 
+from faultpath.analyses.map import decide
 from faultpath.analyses.map.decide import Errors, lattice_weights
 from faultpath.analyses.map.lattice import COARSE, SHOWN, UNITS, lattice, surface_weights
 from faultpath.analyses.map.model import MapResult
@@ -39,6 +40,21 @@ def test_the_break_even_correlation_is_where_the_expectation_is_zero() -> None:
     weights = lattice_weights(Errors((0.0, 0.0), (0.4, 0.4)), estimate)
     expected = Combined.of((weights @ surface_weights(found.points))[np.newaxis], found)
     assert expected.means[0] == pytest.approx(0, abs=0.1)
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_of_many_scenes_each_side_keeps_its_correlations(sign: int) -> None:
+    """What is undecided between them was narrower than the grid, and one side had all of them."""
+
+    def seen(x: float, y: float) -> tuple[np.ndarray, np.ndarray]:
+        return np.full(1000, x * y > 0.02), np.full(1000, x * y < -0.02)
+
+    turned = differences(lambda x, y: seen(x, y)[::sign], lattice(COARSE))
+    joint = decide.joint(FACTS.model_copy(update={"means": (0.05, 0.03)}), turned)
+    (estimate,), ((low, high),) = joint.estimates, joint.undecided
+    assert low < estimate < high < low + 0.025
+    regions = [(region.low, region.high, region.sign) for region in joint.regions]
+    assert regions == [(-1.0, low, -sign), (high, 1.0, sign)]
 
 
 def test_swapping_the_variants_swaps_the_record() -> None:

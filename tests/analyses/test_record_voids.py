@@ -7,6 +7,7 @@ import pytest
 from outcome_tables import BASELINE, REPAIR, SCENES, SPOILS, conditions, facts, question, rows
 
 from faultpath.analyses.decide import decide
+from faultpath.analyses.family import decide_conditions
 from faultpath.analyses.model import CORRECT, SHARED, AuditResult
 from faultpath.report.sentences import words
 from faultpath.report.sentences.answers import answers
@@ -171,6 +172,28 @@ def test_how_many_failures_would_have_to_run_is_what_settles_it():
         for left in [(scene < 70) | (scene >= 70 + ran)]
     ]
     assert leads == [False, True]
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_failures_that_could_part_the_trainings_leave_new_ones_open(sign):
+    """Against the repair they made the fifth training one like the others, and p smaller."""
+    repair, baseline = np.zeros((2, SCENES, 5))
+    repair[:12] = 1
+    repair[12:24, 4] = 1
+    failed = np.zeros((SCENES, 5), np.bool_)
+    failed[40:64, 4] = True
+
+    def decided(repair, baseline):
+        tested = decide_conditions({CORRECT: (repair, baseline)[::sign]}, models=True)
+        effect = tested.effects[CORRECT]
+        return effect.test.p_value < 0.05, effect.sign, tested.missing
+
+    seen, said, missing = decided(*(np.where(failed, np.nan, x) for x in (repair, baseline)))
+    assert (seen, said) == (True, 0)
+    assert decided(repair, np.where(failed, 1, baseline))[:2] == (True, sign)
+    assert decided(np.where(failed, 1, repair), baseline)[:2] == (False, 0)
+    (reruns,) = missing.reruns.values()
+    assert 0 < reruns[0] == reruns[1] < 24
 
 
 @pytest.mark.parametrize("invalid", ["unrepeatable", "unpaired"])

@@ -228,6 +228,12 @@ REFUSED: dict[str, tuple[str, dict[str, Any], str]] = {
     "metric": (HEADER + ROW, {"metrics": "reward"}, "line 2: unknown metric 'reward'"),
     "task": (HEADER + ROW, {"cluster": "task"}, "not every trial names its task"),
     "models": (HEADER + ROW, {"generalise": "models"}, "newly trained models need 5 seeds"),
+    "models of tasks": (
+        "variant,scene,task,success\n"
+        + "".join(f"{v},s{n},t,1\n" for v in ("old", "new") for n in range(6)),
+        {"generalise": "models", "cluster": "task"},
+        "does not know which trainings there are: leave it or",
+    ),
 }
 
 

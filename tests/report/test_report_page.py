@@ -15,7 +15,7 @@ from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
 from faultpath.report.sentences import phrases, words
 from faultpath.report.viewer import captions
-from faultpath.stats.estimate import DEGREES, EM
+from faultpath.stats.estimate import DEGREES, EM, TRAININGS
 
 
 @pytest.fixture(scope="module", params=["one_seed", "three_seeds"])
@@ -126,7 +126,8 @@ def test_the_tests_stand_with_the_numbers_and_say_what_they_compute(page: Page, 
 def test_every_test_has_a_sentence(source: ReportInput) -> None:
     names = [
         *(EM, DEGREES, "exact McNemar", "sign test on scene means", "bets on the mean"),
-        *(f"{EM}, normal E", "sign test on scene differences", "t test of the seeds' effects"),
+        *(f"{EM}, normal E", "sign test on scene differences", TRAININGS),
+        "t test of the seeds' effects",
     ]
     effect = source.record.effects[0]
     for name in names:

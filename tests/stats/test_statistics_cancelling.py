@@ -117,6 +117,20 @@ def test_permuted_errors_permute_the_results(seeds):
     assert again.hurting == tuple(place[error] for error in first.hurting)
 
 
+def test_the_order_of_scenes_decides_nothing_where_rates_are_equal():
+    """Thirds added in another order differ in the last bit, which tells of no gain."""
+    rng = np.random.default_rng(0)
+    none = rng.integers(1, 4, SCENES) / 3.0
+    alone = {0: rng.permutation(none), 1: np.zeros(SCENES)}
+    orders = [rng.permutation(SCENES) for _ in range(20)]
+    gains = {float(alone[0][order].sum() - none[order].sum()) for order in orders}
+    assert min(gains) < 0.0 < max(gains)
+    for order in orders:
+        permuted = {error: values[order] for error, values in alone.items()}
+        result = cancelling(none[order], permuted, {(0, 1): none[order]}, {(0, 1)})
+        assert (result.pairs[0, 1].kind, result.pairs[0, 1].covering) == ("covers", 0)
+
+
 def test_a_scene_counts_where_both_sides_have_an_outcome():
     none, singles, pairs = drawn(3)
     whole = cancelling(none, dict(enumerate(singles)), pairs, set())

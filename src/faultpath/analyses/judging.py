@@ -47,6 +47,11 @@ def pair_results(rows: Sequence[Received], request: JudgeQuestion) -> PairedResu
     names = _condition_names({row.condition for row in rows}, request)
     if request.cluster == "task" and not all(row.task for row in rows):
         raise UserError("not every trial names its task: give --column task=NAME.")
+    if request.cluster == "task" and request.generalise == "models":
+        raise UserError(
+            "--cluster task takes scenes and seeds alike as trials of a task, so it does not know "
+            "which trainings there are: leave it or --generalise models out."
+        )
     received = _by_address(rows, names, request)
     ordered = sorted(set(names.values()), key=lambda name: (name == SHARED, name != CORRECT, name))
     _check_paired(received, ordered, request)

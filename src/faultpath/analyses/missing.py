@@ -9,8 +9,8 @@ import numpy as np
 from faultpath.analyses.contrasts import Design, Outcomes, effect_name, paired_scenes
 from faultpath.run.pairing import Bools
 from faultpath.stats.contrast import Contrast
-from faultpath.stats.distributions import sign_p_value
-from faultpath.stats.estimate import ALPHA, PairedTest
+from faultpath.stats.distributions import sign_p_value, t_p_value
+from faultpath.stats.estimate import ALPHA, SCENES_AND_SEEDS, PairedTest
 
 Correct: TypeAlias = Callable[[Mapping[str, Contrast]], dict[str, Contrast]]
 """Corrects the tests of contrasts, by name, for their number."""
@@ -86,7 +86,10 @@ def nearest_to_nothing(
     lowest: Mapping[str, Contrast], highest: Mapping[str, Contrast]
 ) -> dict[str, Contrast]:
     """Return contrasts as near to no difference as missing outcomes allow: with all of them against
-    the repair where it is ahead even so, with all for it where the baseline is, else none."""
+    the repair where it is ahead even so, with all for it where the baseline is, else none.
+
+    For newly trained models with the p of trainings that they part the most.
+    """
     nearest: dict[str, Contrast] = {}
     for name, low in lowest.items():
         high = highest[name]
@@ -98,7 +101,21 @@ def nearest_to_nothing(
             nearest[name] = high
         else:  # no difference is possible
             nearest[name] = replace(low, test=PairedTest(low.test.name, 1.0, 0))
+        if low.estimand == SCENES_AND_SEEDS:
+            nearest[name] = _trainings_apart(nearest[name], low, high)
     return nearest
+
+
+def _trainings_apart(nearest: Contrast, low: Contrast, high: Contrast) -> Contrast:
+    """Return a contrast with the p-value of trainings that missing outcomes part the most: of those
+    with the larger effects they go for the repair, of the others against it, from one split on."""
+    assert nearest.test is not None
+    against, favour = np.array(low.per_seed), np.array(high.per_seed)
+    order = np.argsort(against + favour)
+    splits = (np.where(order.argsort() < n, against, favour) for n in range(len(order) + 1))
+    p_value = max(t_p_value(effects, nearest.rounding) for effects in splits)
+    test = nearest.test._replace(p_value=max(p_value, nearest.test.p_value))
+    return replace(nearest, test=test)
 
 
 def reruns_needed(
@@ -112,7 +129,7 @@ def reruns_needed(
     are still missing cannot undo an effect, if they come out as the others did: first those of the
     version that alone failed more often, then the others, pair by pair."""
     sign = corrected[name].sign
-    adverse = filled(success, favour=sign < 0)
+    fills = [filled(success, favour) for favour in (False, True)]
     missing = np.stack([np.isnan(part) for part in success])
     one_alone = missing & ~missing[::-1]
     more_often = one_alone[one_alone.sum(axis=(1, 2)).argmax()]
@@ -128,11 +145,12 @@ def reruns_needed(
 
     def holds_with(count: int) -> bool:
         """Return whether the effect is significant, and failures even, where these pairs ran."""
-        left = [np.where(rerun(count), np.nan, part) for part in adverse]
+        low, high = ([np.where(rerun(count), np.nan, part) for part in fill] for fill in fills)
         still = [np.where(part & ~rerun(count), np.nan, 0.0) for part in missing]
-        if not paired_scenes(*left).any() or failed_unevenly((still[0], still[1])):
+        if not paired_scenes(*low).any() or failed_unevenly((still[0], still[1])):
             return False
-        return correct({**corrected, name: design.effect(*left)})[name].sign == sign
+        ends = ({name: design.effect(*left)} for left in (low, high))
+        return correct({**corrected, **nearest_to_nothing(*ends)})[name].sign == sign
 
     # Bisection, since each further pair that ran leaves less to be set against the effect.
     low, high = 0, len(pairs)

@@ -24,7 +24,7 @@ LEVEL, MOST = 0.1, 10
 REGAINED = 0.5
 """Share of the worse error's loss that the pair has to regain."""
 _DIGITS = 9
-"""Digits of means over seeds, so that equal ones differ by exactly 0."""
+"""Digits of means, so that equal ones differ by exactly 0."""
 Key: TypeAlias = tuple[int, int]
 
 
@@ -136,7 +136,7 @@ def cancelling(
         regains = pair.regained is not None and pair.regained >= REGAINED
         beats_both = pair.both >= max(pair.first, pair.second)
         cancels = regains and beats_both and corrected.get(key, 1.0) <= alpha / 2.0
-        gains = alone[other].alone > alone[other].none
+        gains = round(alone[other].alone - alone[other].none, _DIGITS) > 0.0
         covered = regains and not cancels and covers.get(key, 1.0) <= alpha and not gains
         results[key] = pair._replace(
             corrected_p=corrected.get(key),

@@ -9,7 +9,14 @@ import numpy as np
 from faultpath.stats import betting, score, unconditional
 from faultpath.stats.contrast import Contrast, ordered_sum
 from faultpath.stats.distributions import sign_p_value, t_p_value
-from faultpath.stats.estimate import ALPHA, DEGREES, EM, SCENES_AND_SEEDS, PairedTest
+from faultpath.stats.estimate import (
+    ALPHA,
+    DEGREES,
+    EM,
+    SCENES_AND_SEEDS,
+    TRAININGS,
+    PairedTest,
+)
 
 Name = TypeVar("Name", str, int, tuple[int, int])
 Turn: TypeAlias = Literal["reversal", "interaction", "none"]
@@ -19,18 +26,20 @@ def with_test(contrast: Contrast) -> Contrast:
     """Return a contrast with its test, which only this function chooses.
 
     One seed of given models: the E+M test, or McNemar's if ``test`` of its scenes is conditional.
-    Several seeds: the test of degrees (`score`), or the sign test. Newly trained models: the t test
-    of the seeds' effects. A sequential audit: bets on the mean. ``ValueError`` for contrasts that
-    have no test, such as those of unbounded outcomes.
+    Several seeds: the test of degrees (`score`), or the sign test. Newly trained models: the larger
+    p of the test of degrees and of the t test of the seeds' effects, which takes the scenes for
+    known. A sequential audit: bets on the mean. ``ValueError`` for contrasts that have no test,
+    such as those of unbounded outcomes.
     """
     scenes, seeds, ahead = contrast.scenes, contrast.n_seeds, contrast.value
     one_seed = contrast.pairs is not None and seeds == 1
     first, second = contrast.ahead
-    if contrast.estimand == SCENES_AND_SEEDS:
-        name = "t test of the seeds' effects"
-        p = t_p_value(np.asarray(contrast.per_seed), contrast.rounding)
-    elif scenes is None or not contrast.against_zero:
+    if scenes is None or not contrast.against_zero:
         raise ValueError(f"an effect in {contrast.unit} by {contrast.method} has no test")
+    if contrast.estimand == SCENES_AND_SEEDS:
+        name = TRAININGS + unconditional.approximation(contrast.n_scenes)
+        by_seed = t_p_value(np.asarray(contrast.per_seed), contrast.rounding)
+        p = max(by_seed, score.degrees_p_value(*scenes.kinds, scenes.bound))
     elif scenes.test == "sequential":
         name = "bets on the mean"
         p, ahead = betting.p_value(*scenes.kinds, scenes.bound)

@@ -185,7 +185,11 @@ def joint(
             for r, value, a, b, sign in zip(correlations, *columns, strict=True)
         )
 
-    pieces = pieces_of(lambda r: at(r.tolist()).signs(z, tested=False) == 0, _GRID)
+    signs, grid = at(_GRID.tolist()).signs(z, tested=False), _GRID
+    if (signs[:-1] * signs[1:] < 0).any():  # what is undecided between them is narrower than that
+        turns = pieces_of(lambda r: at(r.tolist()).means > 0.0, _GRID)
+        grid = np.union1d(_GRID, turns)
+    pieces = pieces_of(lambda r: at(r.tolist()).signs(z, tested=False) == 0, grid)
     edges = [-1.0, *(edge for piece in pieces for edge in piece), 1.0]
     spans = [(a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if a < b]
     means: list[float] = at([0.5 * (a + b) for a, b in spans]).means.tolist() if spans else []

@@ -45,6 +45,8 @@ _TESTS = {
     "exact McNemar": "if both versions were equally good, the chance of a split as uneven as this "
     "one of the scenes that one version alone wins",
     "sign test": "whether each version is ahead in as many scenes as the other",
+    "t test of seeds": "the largest p-value of three, of a t test of a mean effect of trainings of "
+    "0, if they spread as a Gaussian does, and of both tests of scenes",
     "t test": "whether the mean effect of trainings is 0, if they spread as a Gaussian does",
     "bets on the mean": "bets against a mean of 0, which hold at whatever scene one stops",
 }
