@@ -329,3 +329,14 @@ def test_an_earlier_result_that_cannot_be_read_is_not_taken_for_none(
     with pytest.raises(UserError, match="is damaged or from another version"):
         judged(results, tmp_path / "run")
     assert (tmp_path / "run" / "record.json").read_text() == stored
+
+
+def test_other_results_may_be_judged_in_the_same_folder(tmp_path: Path) -> None:
+    for name, count in (("few.csv", 12), ("many.csv", 20)):
+        won = {"old": [n % 3 > 0 for n in range(count)], "new": [n % 2 > 0 for n in range(count)]}
+        results = table(tmp_path / name, {"nominal": won, "shared": won})
+        run = judged(results, tmp_path / "run")
+        opened = faultpath.open_run(tmp_path / "run")
+        assert opened.provenance == run.provenance
+        assert name in opened.provenance.command[0]
+        assert opened.record.scenes == count
