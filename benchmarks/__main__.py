@@ -22,7 +22,7 @@ from faultpath_quadrotor import native
 import faultpath
 from benchmarks import page
 from benchmarks.results import ROOT, TIMES, Machine, Record, Results, load, record, save
-from benchmarks.rows import ELSEWHERE, ONCE, ROWS, SIDES, Row
+from benchmarks.rows import ROWS, SIDES, Row
 from faultpath.run.provenance import checkout, processor
 
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
@@ -39,26 +39,23 @@ def timed(side: str, loops: int) -> tuple[float, int, str]:
     Return units of work a second, the calls that make a value, for the next round, and the side's
     note; `loops` 0 lets pyperf find them.
     """
-    where, environment = SIDES[side]
+    measured = SIDES[side]
+    environment = measured.environment
     with tempfile.TemporaryDirectory() as folder:
         output, python = Path(folder) / "output.json", sys.executable
-        if side in ELSEWHERE:
-            python, problem = str(ROOT / ELSEWHERE[side]), str(Path(folder) / "problem.npz")
+        if measured.python:
+            python, problem = str(ROOT / measured.python), str(Path(folder) / "problem.npz")
             if not os.access(python, os.X_OK):
                 raise NotMeasured(f"{side} needs a newer Python, which `make bench` did not find")
             write = [sys.executable, "-m", "benchmarks.peers.batched", problem]
             subprocess.run(write, cwd=ROOT, check=True)
             environment = {**environment, "FAULTPATH_PROBLEM": problem}
         often = ["--values=3", "--warmups=1", "--min-time=0.1", f"--loops={loops}"]
-        if side in ONCE:
+        if measured.once:
             often = ["--values=1", "--warmups=0", "--loops=1"]
-        command = [python, "-m", "benchmarks.side", where, "--processes=1", *often]
-        command += [
-            f"--output={output}",
-            "--quiet",
-            "--copy-env",
-            f"--affinity={max(os.sched_getaffinity(0))}",
-        ]
+        command = [python, "-m", "benchmarks.side", measured.build, "--processes=1", *often]
+        command += [f"--output={output}", "--quiet", "--copy-env"]
+        command += [f"--affinity={max(os.sched_getaffinity(0))}"]
         done = subprocess.run(
             command,
             cwd=ROOT,
@@ -73,7 +70,7 @@ def timed(side: str, loops: int) -> tuple[float, int, str]:
     metadata = bench.get_metadata()
     loops = bench.get_total_loops() // bench.get_nvalue()
     note = metadata.get("note", "")
-    if side in ONCE:
+    if measured.once:
         note = f"{page.number(metadata['mem_max_rss'] / 2**30)} GB of memory"
     return float(metadata["amount"]) / bench.median(), loops, note
 

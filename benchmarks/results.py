@@ -4,7 +4,7 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 from statistics import median
-from typing import Literal
+from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict
 
@@ -111,6 +111,11 @@ class Results(_Frozen):
 def load(path: Path = RESULTS) -> Results:
     """Read `results.json`, or a file like it."""
     return Results.model_validate_json(path.read_bytes())
+
+
+def stored(path: Path) -> Any:
+    """Read `device.json` or `waits.json`."""
+    return json.loads(path.read_text("utf-8"))
 
 
 def save(results: Results) -> None:

@@ -5,58 +5,14 @@ from typing import Any, NamedTuple
 
 from blocks import Run, Wrong, load
 from rendering import difference
-from studies import CAMERA_FAULTS, camera, sensors
+from studies import WORDS, camera, sensors
 
 from faultpath.analyses import effects
 from faultpath.report.sentences import wording
 
-WORLD_MODEL = "stable-worldmodel"
-PAGES = {
-    "quadrotor-L3-decision": ("Quadrotor, 400 scenes", "quadrotor"),
-    "quadrotor-L3-confirmation": ("Quadrotor, 300 scenes", "quadrotor"),
-    "quadrotor-L3": ("Quadrotor, 100 scenes", "quadrotor"),
-    "toy": ("Cart", "tutorial"),
-    "dock": ("Docking rover", "own-loop"),
-    "pendulum": ("Pendulum of Gymnasium", "gymnasium"),
-    "learned-pendulum": ("Learned world model", "learned-world-model"),
-    "rotorpy": ("RotorPy", "rotorpy"),
-    "do-mpc": ("do-mpc", "do-mpc"),
-    "motulator": ("motulator", "motulator"),
-    "basilisk": ("Basilisk", "basilisk"),
-    "wpilib": ("WPILib", "wpilib"),
-    "openpilot-ford": ("openpilot on a Ford", "openpilot"),
-    "openpilot-tesla": ("openpilot on a Tesla", "openpilot"),
-    "openpilot-nissan": ("openpilot on a Nissan", "openpilot"),
-    "openpilot-nissan-tolerance": ("openpilot on a Nissan", "openpilot"),
-    "stable-worldmodel-rectified-moved": ("stable-worldmodel, shifted by 2 px", WORLD_MODEL),
-    "stable-worldmodel-rectified-darker": ("stable-worldmodel, 30 % darker", WORLD_MODEL),
-    "stable-worldmodel-augmented-moved": ("stable-worldmodel, shifted by 2 px", WORLD_MODEL),
-    "stable-worldmodel-augmented-darker": ("stable-worldmodel, 30 % darker", WORLD_MODEL),
-    "lerobot": ("Relative actions as in LeRobot", "lerobot"),
-}
-"""Title and page of the audits that reference runs hold, in the order of the table."""
-TEACHING = ("tutorial", "own-loop", "gymnasium", "lerobot")
-"""Pages whose systems were written to show a reversal."""
-CAMERAS = {
-    "marked": "One camera",
-    "drift": "One camera",
-    "smear": "One camera",
-    "blank": "One camera, blank rooms",
-}
-"""Names of the studies of one camera, by their file."""
-REVERSAL, MISSED, ALONE = "reversal", "missed by the isolated test", "only in the isolated test"
-SIZE, SAME, OPEN = "another size", "same", "inconclusive"
-WORDS = (REVERSAL, MISSED, ALONE, SIZE, SAME, OPEN)
-"""Words for what an isolated test says of deployment; of several modules the first is shown."""
-ANSWERS = {
-    REVERSAL: "no: the better version is the worse one",
-    MISSED: "no: there is a difference that it does not show",
-    ALONE: "no: the difference that it shows is gone",
-    SIZE: "which version is better, not by how much",
-    SAME: "yes, as far as is seen",
-    OPEN: "inconclusive",
-}
-"""The same as an answer to the question whether the test foretells the shared fault's effect."""
+PAGES, ANSWERS = WORDS["runs"], WORDS["answers"]
+REVERSAL, MISSED, ALONE, SIZE, SAME, OPEN = ANSWERS
+"""Words for what an isolated test says of deployment."""
 
 
 class Effect(NamedTuple):
@@ -91,7 +47,9 @@ class Audit(NamedTuple):
     def module(self) -> str:
         """The module that tells most."""
         words, effects = self.words, self.effects
-        return min(words, key=lambda name: (WORDS.index(words[name]), -abs(effects[name].value)))
+        return min(
+            words, key=lambda name: ([*ANSWERS].index(words[name]), -abs(effects[name].value))
+        )
 
     @property
     def alone(self) -> Effect:
@@ -121,7 +79,7 @@ def by_system() -> dict[str, list[str]]:
     words: dict[str, list[str]] = {}
     for audit in every_audit():
         system = audit.title.partition(", ")[0].partition(" on a ")[0]
-        mark = " (teaching example)" if audit.page in TEACHING else ""
+        mark = " (teaching example)" if audit.page in WORDS["teaching"] else ""
         words.setdefault(f"[{system}]({{docs}}/{audit.page}.md){mark}", []).append(audit.word)
     return words
 
@@ -152,9 +110,9 @@ def every_audit() -> Iterator[Audit]:
         effects = {effect.condition: _effect(effect) for effect in record.effects}
         turns = {change.isolated: change.turn for change in record.changes}
         yield Audit(title, page, "", f"`{record.question.repair}`", effects, turns)
-    for rooms, title in CAMERAS.items():
+    for rooms, title in WORDS["cameras"].items():
         for audit in camera(rooms, "held-out")["audits"]:
-            fault, repair = CAMERA_FAULTS[audit["fault"]], f"`{audit['repair']}`"
+            fault, repair = WORDS["camera_faults"][audit["fault"]], f"`{audit['repair']}`"
             effects = audit["effects"]
             # At a module where the fault did not act nothing was tested.
             acted = {n: t for n, t in audit["turns"].items() if effects[n] != effects["correct"]}

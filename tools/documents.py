@@ -38,7 +38,7 @@ from faultpath.report.tables import markdown_block, markdown_grid
 from faultpath.run.store.signals import SIGNALS
 
 sys.path.insert(0, str(ROOT))
-from benchmarks import page as performance
+from benchmarks import page, results
 
 NAMES = {
     "block": markdown_block,
@@ -49,6 +49,8 @@ NAMES = {
     "grid": markdown_grid,
     "load": load,
     "paper": paper_blocks,
+    "measured": results,
+    "performance": page,
     "phrases": phrases,
     "runs": run_blocks,
     "terminal": terminal,
@@ -65,11 +67,6 @@ FILTERS = {
 BLOCKS: Mapping[str, Callable[..., str]] = {
     **macros(NAMES, FILTERS),
     "api": api_blocks.signatures,
-    "performance:machine": performance.machine,
-    "performance:rows": performance.all_rows,
-    "performance:elsewhere": performance.elsewhere,
-    "performance:waits": performance.waits,
-    "performance:gpu": performance.gpu,
 }
 """Functions that return the text of a block from the other words of its name, by its kind."""
 
@@ -155,8 +152,8 @@ def generated() -> Mapping[Path, str]:
     drawn = (PICTURES[kind](*names) for kind, names in blocks_shown() if kind in PICTURES)
     for picture in drawn:
         files |= picture.files
-    for page in PAGES:
-        files |= page()
+    for files_of in PAGES:
+        files |= files_of()
     return files
 
 

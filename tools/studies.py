@@ -1,8 +1,10 @@
 """Numbers and sentences of finished studies, as the templates of their pages show them."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
+import yaml
 from blocks import figures_of, load
 from carry_design import Flown
 from carry_verdicts import hours, lead, moves, overall, questions, reason, sentences, title
@@ -11,13 +13,11 @@ from state_design import Audit, SensorAudits
 from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.core.text import counted, series
 
-CAMERA_PLACES = {
-    "correct": "no fault",
-    "observation": "live picture alone",
-    "goal": "picture of the goal alone",
-    "shared": "both pictures",
-}
+WORDS = yaml.safe_load(Path(__file__).with_name("audits.yaml").read_text("utf-8"))
+CAMERA_PLACES, CAMERA_FAULTS = WORDS["camera_places"], WORDS["camera_faults"]
 CAMERA_COMPARED = {place: words for place, words in CAMERA_PLACES.items() if place != "goal"}
+"""Places of the page's table: a test of the live picture alone, and deployment."""
+COMPARED = {place: words for place, words in CAMERA_PLACES.items() if place != "goal"}
 """Places of the page's table: a test of the live picture alone, and deployment."""
 CAMERA_FAULTS = {
     "darker": "15 % darker",

@@ -28,29 +28,35 @@ SUCCESS: dict[tuple[str, str], float] = {
         *zip(table_1.PREDICTORS, (68, 69, 70, 69), strict=True),
         *zip(table_1.WITH_TRUE_CLEARANCE, (73, 74), strict=True),
         *(
-            (table_2.cell(model, error), table_2.paper_rate(model, error))
+            (table_2.cell(model, error), table_2.GRID.rate(model, error))
             for model, error in product(table_2.NAMES, table_2.ERRORS)
         ),
         *(
-            (table_3.cell(*of), table_3.paper_rate(*of))
-            for of in product(table_3.ROWS, table_3.ENVIRONMENTS, table_3.LEVELS)
+            (grid.cell(variant, level), grid.rate(variant, level))
+            for grid in table_3.GRIDS.values()
+            for variant, level in product(grid.names, grid.columns)
         ),
         *(
-            (table_4.cell(method, condition), table_4.paper_rate(method, condition))
+            (table_4.cell(method, condition), table_4.GRID.rate(method, condition))
             for method, condition in in_text.NINE
         ),
         *(
-            (table_6.negative(method, condition), table_6.paper_negative(method, condition))
+            (table_6.negative(method, condition), table_6.GRID.rate(method, condition))
             for method, condition in product(("gru", "gru+dcc"), ("reconstruction-only", "shared"))
         ),
         *zip((in_text.noisy("wm-a", e) for e in in_text.ERRORS), (20, 73, 10), strict=True),
         *((in_text.noisy("wm-a+dcc", e), 66) for e in in_text.ERRORS),
         *((in_text.noisy_wind(name), won) for name, won in (("gru", 66), ("zero-wind", 40))),
-        (in_text.WIND_FROZEN, 59),
-        (in_text.CODE_FROZEN, 64),
-        (in_text.CALIBRATION_WITHHELD, 55),
-        (in_text.WITHHELD_UPDATED, 85),
-        (in_text.WITHHELD_FROZEN, 86),
+        *(
+            (in_text.CELLS[name], percent)
+            for name, percent in (
+                ("wind-frozen", 59),
+                ("code-frozen", 64),
+                ("calibration-withheld", 55),
+                ("withheld-updated", 85),
+                ("withheld-frozen", 86),
+            )
+        ),
         *(
             (figure_3.cell(model, error), percent)
             for model, percents in (
@@ -83,13 +89,7 @@ MEDIANS: dict[Measurement, float] = {
         )
         for measurement, median in zip(measurements, medians, strict=True)
     },
-    **{
-        error: table_6.paper_acceleration(*of)
-        for of in product(table_4.METHODS, table_6.INTERFACES)
-        for error in table_6.errors("acceleration-error", *of)
-    },
-    **dict.fromkeys(table_6.errors("wind-term-error", "gru", "reconstruction-only"), 1.93),
-    **dict.fromkeys(table_6.errors("wind-term-error", "gru", "shared"), 1.83),
+    **{error: of for terms, of in table_6.PRINTED.items() for error in table_6.errors(*terms)},
     **{
         error: median
         for of, median in zip(in_text.NINE, POSITIONS, strict=True)

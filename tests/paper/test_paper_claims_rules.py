@@ -4,23 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-from faultpath_paper.claims.rules import (
-    ABOVE,
-    BELOW,
-    NO_DIFFERENCE,
-    NO_GAIN,
-    NO_LOSS,
-    POINT_SCENES,
-    REPORTED,
-    Bound,
-    Rule,
-    at_least,
-    at_most,
-    bounded,
-    by_point,
-    less_than,
-    within,
-)
+from faultpath_paper.claims.rules import POINT_SCENES, Rule, rule_of
 from faultpath_paper.claims.statement import Turned
 from faultpath_paper.detection import Difference, least_detectable, resampled
 from faultpath_paper.results import decisive
@@ -33,6 +17,23 @@ from faultpath.stats.resamples import Resamples
 
 Interval = tuple[float, float] | None
 UP, DOWN, OPEN = (5.0, 15.0), (-15.0, -5.0), (-5.0, 15.0)
+ABOVE, BELOW = rule_of("it is significantly above 0"), rule_of("it is significantly below 0")
+NO_GAIN, NO_LOSS, NO_DIFFERENCE = (
+    rule_of(f"it is not significantly {side} 0") for side in ("above", "below", "different from")
+)
+REPORTED = rule_of("reported: it")
+
+
+def bounded(bound: str) -> Rule:
+    return rule_of(f"it is {bound}")
+
+
+def by_point(bound: str) -> Rule:
+    return rule_of(f"it is {bound}, by the point estimate")
+
+
+def within(least: float, most: float) -> Rule:
+    return rule_of(f"it lies between {least:g} and {most:g}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,38 +88,44 @@ def found(interval: Interval, p_value: float | None = None, mde: float | None = 
         (NO_LOSS, found(OPEN, 0.3, mde=None), "undecided"),
         (NO_LOSS, found(None, 0.3), "undecided"),
         # A threshold is met by the estimate, and missed by the whole interval.
-        (at_least(10), found(UP), "confirmed"),
-        (at_least(15), found(UP), "undecided"),
-        (at_least(15.1), found(UP), "refuted"),
-        (less_than(4.9), found(UP), "refuted"),
-        (less_than(10), found(UP), "undecided"),
-        (less_than(10.1), found(UP), "confirmed"),
-        (bounded(Bound(10, 1), seen=True), found(UP, 0.01), "confirmed"),
-        (at_most(-10, seen=True), found(DOWN, 0.01), "confirmed"),
-        (at_most(-20), found(DOWN, 0.01), "refuted"),
-        (bounded(Bound(10, 1), seen=True), found(UP, 0.2), "undecided"),
-        (bounded(Bound(20, 1), seen=True), found(UP, 0.01), "refuted"),
+        (bounded("at least 10"), found(UP), "confirmed"),
+        (bounded("at least 15"), found(UP), "undecided"),
+        (bounded("at least 15.1"), found(UP), "refuted"),
+        (bounded("below 4.9"), found(UP), "refuted"),
+        (bounded("below 10"), found(UP), "undecided"),
+        (bounded("below 10.1"), found(UP), "confirmed"),
+        (bounded("at least 10 and significant"), found(UP, 0.01), "confirmed"),
+        (bounded("at most -10 and significant"), found(DOWN, 0.01), "confirmed"),
+        (bounded("at most -20"), found(DOWN, 0.01), "refuted"),
+        (bounded("at least 10 and significant"), found(UP, 0.2), "undecided"),
+        (bounded("at least 20 and significant"), found(UP, 0.01), "refuted"),
         (within(9, 11), found(UP), "confirmed"),
         (within(11, 12), found(UP), "undecided"),
         (within(16, 20), found(UP), "refuted"),
-        (at_least(-1), found(None), "undecided"),
+        (bounded("at least -1"), found(None), "undecided"),
         (within(-1, 1), found(None), "undecided"),
         # Claims about points are decided by points.
-        (by_point(1), shown(0.1, OPEN), "confirmed"),
-        (by_point(1), shown(0.0, OPEN), "undecided"),
-        (by_point(1, strict=False), shown(0.0, OPEN), "confirmed"),
-        (by_point(-1), shown(0.1, OPEN), "refuted"),
-        (by_point(-1, -0.5, strict=False), shown(-0.5, OPEN), "confirmed"),
+        (by_point("above 0"), shown(0.1, OPEN), "confirmed"),
+        (by_point("above 0"), shown(0.0, OPEN), "undecided"),
+        (by_point("at least 0"), shown(0.0, OPEN), "confirmed"),
+        (by_point("below 0"), shown(0.1, OPEN), "refuted"),
+        (by_point("at most -0.5"), shown(-0.5, OPEN), "confirmed"),
         (REPORTED, shown(-7.0, OPEN), "confirmed"),
         # Few scenes meet a threshold by their whole interval.
-        (at_least(8), shown(10.0, UP, 10), "undecided"),
-        (at_least(4), shown(10.0, UP, 10), "confirmed"),
+        (bounded("at least 8"), shown(10.0, UP, 10), "undecided"),
+        (bounded("at least 4"), shown(10.0, UP, 10), "confirmed"),
         (within(8, 12), shown(10.0, UP, 10), "undecided"),
         (within(4, 16), shown(10.0, UP, 10), "confirmed"),
     ],
 )
 def test_a_rule_answers_by_value_interval_and_test(rule, difference, answer):
     assert rule.judge(difference).answer == answer
+
+
+def test_words_that_end_in_no_rule_are_refused() -> None:
+    for words in ("it is significantly above 1", "it is near 0", "it lies at 3"):
+        with pytest.raises(ValueError, match="no rule ends in the words"):
+            rule_of(words)
 
 
 def test_of_several_seeds_the_interval_detects_and_the_test_may_fail_to() -> None:
@@ -128,11 +135,11 @@ def test_of_several_seeds_the_interval_detects_and_the_test_may_fail_to() -> Non
     assert ABOVE.judge(several).answer == "confirmed"
     assert BELOW.judge(several).answer == "refuted"
     assert NO_GAIN.judge(several).answer == "confirmed"
-    assert bounded(Bound(10, 1), seen=True).judge(several).answer == "confirmed"
+    assert bounded("at least 10 and significant").judge(several).answer == "confirmed"
 
 
 @pytest.mark.parametrize("n_scenes", [1, POINT_SCENES - 1])
-@pytest.mark.parametrize("rule", [by_point(1), by_point(-1), by_point(1, 60), by_point(-1, 0.0)])
+@pytest.mark.parametrize("rule", [by_point(bound) for bound in ("above 0", "below 0", "above 60")])
 def test_few_scenes_decide_nothing_by_a_point_estimate(rule: Rule, n_scenes: int) -> None:
     for value in (-50.0, 0.0, 50.0):
         judged = rule.judge(shown(value, (value - 5, value + 5), n_scenes))
@@ -148,7 +155,9 @@ def test_an_interval_that_reaches_0_says_nothing_about_the_side_of_0(rule, inter
     assert rule.judge(difference).answer == "undecided"
 
 
-@pytest.mark.parametrize("rule", [at_least(-60), less_than(30), within(1, 2), within(49, 51)])
+@pytest.mark.parametrize(
+    "rule", [bounded("at least -60"), bounded("below 30"), within(1, 2), within(49, 51)]
+)
 @pytest.mark.parametrize("value", [0.0, 50.0, -50.0])
 def test_an_interval_without_width_of_few_scenes_is_no_more_than_a_point(rule, value):
     difference = shown(value, (value, value), 10, mde=1.0)

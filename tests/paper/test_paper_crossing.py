@@ -18,7 +18,7 @@ from faultpath.system import Status
 
 SCENES = 60
 REPAIR = REPAIRS["GRU/reconstruction-only"]
-UNDER_15, OVER_30 = Bound(15, -1, strict=True), Bound(30, 1, strict=True)
+UNDER_15, OVER_30 = Bound.of("below", "15"), Bound.of("above", "30")
 
 
 def flown(costs: int, gains: int, scenes: int = SCENES) -> Results:

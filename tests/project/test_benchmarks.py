@@ -4,7 +4,9 @@ import json
 import re
 from pathlib import Path
 
-from benchmarks import cost, page, physics, planning
+from documents import BLOCKS
+
+from benchmarks import cost, physics, planning
 from benchmarks.peers import batched
 from benchmarks.results import DEVICE, LOOP_STEPS, TAPS, Target, load, record
 from benchmarks.rows import ROWS, SIDES
@@ -43,15 +45,17 @@ def test_sizes_in_the_text_are_those_that_are_measured():
         assert sizes in " ".join(words)
 
 
-def test_the_loop_s_row_tells_what_a_tap_costs():
+def test_the_loop_s_row_tells_what_a_tap_costs(monkeypatch):
     loop = record("Loop", LOOP_STEPS, [2000.0], [10_000.0], "bare loop")
-    table = page.rows([loop])
+    results = load().model_copy(update={"records": (loop,)})
+    monkeypatch.setattr("benchmarks.results.load", lambda: results)
+    table = BLOCKS["performance:rows"]()
     assert "| Loop | 500 µs a step | 100 (bare loop) | 0.2" in table
     assert "- Loop: 40 µs a tap and step more than the bare loop, at 10 taps" in table
 
 
 def test_every_figure_of_a_gpu_names_its_command_or_says_that_it_was_entered_by_hand():
-    text = page.gpu()
+    text = BLOCKS["performance:gpu"]()
     for figures in json.loads(DEVICE.read_text("utf-8")).values():
         for part in (figures, figures.get("audits"), figures.get("paper")):
             if part is not None:

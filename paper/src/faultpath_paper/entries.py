@@ -144,14 +144,12 @@ class PublishedContrast:
 
 
 def published_contrasts(
-    differences: Sequence[float],
-    intervals: Sequence[Sequence[float]],
-    wins_losses: Sequence[Sequence[str]],
+    pp: Sequence[float], ci95: Sequence[Sequence[float]], wins_losses: Sequence[Sequence[str]]
 ) -> tuple[PublishedContrast, ...]:
     """Return contrasts that the paper prints in a row: pp, ends of intervals, `2:15` by seed."""
     return tuple(
-        PublishedContrast(wording.signed(pp), bracket(ends), wins_losses="/".join(counts))
-        for pp, ends, counts in zip(differences, intervals, wins_losses, strict=True)
+        PublishedContrast(wording.signed(value), bracket(ends), wins_losses="/".join(counts))
+        for value, ends, counts in zip(pp, ci95, wins_losses, strict=True)
     )
 
 

@@ -11,7 +11,7 @@ from faultpath.report.sentences import wording
 from faultpath.report.tables import Line, Table
 from faultpath_paper.answers import Sweep
 from faultpath_paper.cells import Cell, data
-from faultpath_paper.entries import EntryGroup, Figure, PublishedContrast, difference, success
+from faultpath_paper.entries import EntryGroup, Figure, success
 from faultpath_paper.evidence.table import Measured, Measurement
 from faultpath_paper.results import NotRun, Results
 
@@ -92,18 +92,6 @@ def rates(label: str, cells: Iterable[Cell], papers: Sequence[Figure]) -> TableR
     """Return a row of success in percent."""
     pairs = zip(cells, papers, strict=True)
     return TableRow(label, tuple(success(cell, paper) for cell, paper in pairs))
-
-
-ROWS = ("Difference", "95 % interval", "Score interval", "Wins:losses")
-"""Headings of the first of what `difference` makes."""
-
-
-def differences(
-    pairs: Iterable[tuple[Cell, Cell]], published: Sequence[PublishedContrast]
-) -> Columns:
-    """Return the rows that `ROWS` names, with a column for each pair of cells."""
-    columns = zip(pairs, published, strict=True)
-    return Columns(ROWS, tuple(difference(*pair, paper) for pair, paper in columns))
 
 
 @dataclass(frozen=True)

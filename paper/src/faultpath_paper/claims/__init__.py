@@ -3,27 +3,17 @@
 from collections.abc import Mapping, Sequence
 
 from faultpath_paper.answers import ClaimVerdict, Ledger
-from faultpath_paper.cells import published_claims
-from faultpath_paper.claims import (
-    calibration,
-    compensation,
-    others,
-    paying,
-    predictors,
-    shared,
-    wind,
-)
+from faultpath_paper.cells import data, published_claims
 from faultpath_paper.claims.statement import Statements, verdict
+from faultpath_paper.claims.terms import statement
 from faultpath_paper.results import Results
 
 SUBJECTS: Mapping[str, Mapping[str, Statements]] = {
-    "Predictors (Table I)": predictors.CLAIMS,
-    "Calibration errors (Table II, Figure 3)": calibration.CLAIMS,
-    "Wind (Table III)": wind.CLAIMS,
-    "Shared errors (Tables IV, VI (b))": shared.CLAIMS,
-    "Compensation (Table VI (a))": compensation.CLAIMS,
-    "When repairs pay (Table V)": paying.CLAIMS,
-    "Histories, planning, perception (text)": others.CLAIMS,
+    subject: {
+        claim: tuple(statement(*entry) for entry in entries.items())
+        for claim, entries in claims.items()
+    }
+    for subject, claims in data("statements.yaml").items()
 }
 """Claims by subject, with its place in the paper."""
 STATEMENTS: Mapping[str, Statements] = {

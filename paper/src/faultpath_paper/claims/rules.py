@@ -1,9 +1,11 @@
 """When a statement is confirmed, when it is refuted, and when the run leaves it open.
 
-`docs/design/claims.md` gives the reasons. A rule judges contrasts with the interval of the paper,
-the percentile bootstrap of scenes, and does not know the figure that the paper reports.
+`docs/design/claims.md` gives the reasons. A statement's last words name its rule. A rule judges
+contrasts with the interval of the paper, the percentile bootstrap of scenes, and does not know the
+figure that the paper reports.
 """
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -39,14 +41,10 @@ FEW_FOR_POINTS = Judged("undecided", f"an estimate alone counts from {POINT_SCEN
 TIED = Judged("undecided", "the estimate is a tie")
 
 
-@dataclass(frozen=True)
-class Rule:
+class Rule(NamedTuple):
     """One way of deciding."""
 
-    words: str
-    """The statement, with `{}` for its subject."""
     judge: Callable[[Contrast], Judged]
-    """Judges a contrast."""
     sided: bool = True
     """Whether the statement is about a side of no effect, rather than about there being none."""
 
@@ -67,24 +65,23 @@ def telling(interval: Ends | None, n_scenes: int) -> Ends | None:
     return interval if interval[1] - interval[0] > ROUNDING else None
 
 
-def detected(sign: int) -> Rule:
-    """Return the rule that the difference is detected on one side of 0; refuted on the other."""
+def _detected(side: str) -> Rule:
+    """The difference is detected on one side of 0; refuted on the other."""
 
     def judge(contrast: Contrast) -> Judged:
-        side = detection(contrast)
-        if side:
-            return CONFIRMED if side == sign else REFUTED
+        if found := detection(contrast):
+            return CONFIRMED if found == _SIDES[side] else REFUTED
         if contrast.interval is None:
             return FEW_SCENES
         if contrast.sign_of_interval:
             return Judged("undecided", "the interval excludes 0, the test does not reject")
         return OPEN
 
-    return Rule(f"{{}} is significantly {_SIDES[sign]} 0", judge)
+    return Rule(judge)
 
 
-def not_detected(sign: int | None = None) -> Rule:
-    """Return the rule that no difference is detected, on one side of 0 or on either.
+def _not_detected(side: str) -> Rule:
+    """No difference is detected, on one side of 0 or on either.
 
     Refuted where interval and test find one there; else confirmed where it would have been seen.
     """
@@ -92,8 +89,8 @@ def not_detected(sign: int | None = None) -> Rule:
     def judge(contrast: Contrast) -> Judged:
         if contrast.interval is None:
             return FEW_SCENES
-        if side := significant_side(contrast):
-            return REFUTED if sign in (None, side) else CONFIRMED
+        if found := significant_side(contrast):
+            return REFUTED if found == _SIDES.get(side, found) else CONFIRMED
         least = least_detectable(contrast)
         if least is None:
             return Judged("undecided", "no difference, however large, is sure to be significant")
@@ -101,8 +98,7 @@ def not_detected(sign: int | None = None) -> Rule:
             return Judged("undecided", "a difference of a size that counts could have been missed")
         return CONFIRMED
 
-    where = "different from" if sign is None else _SIDES[sign]
-    return Rule(f"{{}} is not significantly {where} 0", judge, sided=False)
+    return Rule(judge, sided=False)
 
 
 @dataclass(frozen=True)
@@ -112,13 +108,13 @@ class Bound:
     limit: float
     sign: int
     """1: at least; -1: at most."""
-    strict: bool = False
+    strict: bool
     """Whether a value equal to the limit misses it."""
 
-    @property
-    def words(self) -> str:
-        """The statement, with `{}` for its subject."""
-        return f"{{}} is {(_SIDES if self.strict else _LIMITS)[self.sign]} {self.limit:g}"
+    @classmethod
+    def of(cls, side: str, limit: str) -> "Bound":
+        """Return the bound of words such as `above` and `15`."""
+        return cls(float(limit), _SIDES[side], side in ("above", "below"))
 
     def ahead(self, value: float) -> float:
         """Return by how much a value is beyond the limit."""
@@ -146,8 +142,9 @@ class Bound:
         return CONFIRMED
 
 
-def bounded(bound: Bound, *, seen: bool = False) -> Rule:
-    """Return the rule that the value meets a bound; `seen`: and is detected on that side of 0."""
+def _bounded(side: str, limit: str, seen: str | None) -> Rule:
+    """The value meets a bound; `seen`: and is detected on that side of 0."""
+    bound = Bound.of(side, limit)
 
     def judge(contrast: Contrast) -> Judged:
         met = bound.judge(contrast.value, contrast.interval, contrast.n_scenes)
@@ -155,52 +152,38 @@ def bounded(bound: Bound, *, seen: bool = False) -> Rule:
             return Judged("undecided", "met, but not significant")
         return met
 
-    return Rule(f"{bound.words}{' and significant' if seen else ''}", judge)
+    return Rule(judge)
 
 
-def at_least(limit: float) -> Rule:
-    """Return the rule that the value is at least a limit."""
-    return bounded(Bound(limit, 1))
-
-
-def at_most(limit: float, *, seen: bool = False) -> Rule:
-    """Return the rule that the value is at most a limit; `seen` as in `bounded`."""
-    return bounded(Bound(limit, -1), seen=seen)
-
-
-def less_than(limit: float) -> Rule:
-    """Return the rule that the value is below a limit."""
-    return bounded(Bound(limit, -1, strict=True))
-
-
-def within(least: float, most: float) -> Rule:
-    """Return the rule that the value lies between two limits, or on them.
+def _within(least: str, most: str) -> Rule:
+    """The value lies between two limits, or on them.
 
     Refuted when the whole interval misses; confirmed when all of it lies inside, or in a run that
     is large enough the estimate alone.
     """
+    lowest, highest = float(least), float(most)
 
     def judge(contrast: Contrast) -> Judged:
         interval = telling(contrast.interval, contrast.n_scenes)
         if interval is None:
             return FEW_SCENES
         low, high = interval
-        if high < least or low > most:
+        if high < lowest or low > highest:
             return REFUTED
-        if not least <= contrast.value <= most:
+        if not lowest <= contrast.value <= highest:
             return OPEN
-        inside = least < low and high < most
+        inside = lowest < low and high < highest
         return CONFIRMED if inside or points_decide(contrast.n_scenes) else FEW_FOR_POINTS
 
-    return Rule(f"{{}} lies between {least:g} and {most:g}", judge, sided=False)
+    return Rule(judge, sided=False)
 
 
-def by_point(sign: int, limit: float = 0.0, *, strict: bool = True) -> Rule:
-    """Return the rule that the point estimate, in a large enough run, is on one side of a limit.
+def _by_point(side: str, limit: str) -> Rule:
+    """The point estimate, in a large enough run, is on one side of a limit.
 
     A tie confirms no advantage.
     """
-    bound = Bound(limit, sign, strict)
+    bound = Bound.of(side, limit)
 
     def judge(contrast: Contrast) -> Judged:
         if not enough(contrast):
@@ -211,12 +194,31 @@ def by_point(sign: int, limit: float = 0.0, *, strict: bool = True) -> Rule:
             return CONFIRMED
         return REFUTED if bound.ahead(contrast.value) else TIED
 
-    return Rule(f"{bound.words}, by the point estimate", judge)
+    return Rule(judge)
 
 
-_SIDES = {1: "above", -1: "below"}
-_LIMITS = {1: "at least", -1: "at most"}
-ABOVE, BELOW = detected(1), detected(-1)
-NO_GAIN, NO_LOSS, NO_DIFFERENCE = not_detected(1), not_detected(-1), not_detected()
-REPORTED = Rule("reported: {}", lambda contrast: CONFIRMED)
-"""Rule of a quantity that the claim only asks for; one that was not run raises `NotRun`."""
+def _reported(contrast: Contrast) -> Judged:
+    """Confirm what there is: a quantity that was not run raises `NotRun`."""
+    del contrast
+    return CONFIRMED
+
+
+_SIDES = {"above": 1, "at least": 1, "below": -1, "at most": -1}
+BOUND = r".* is (above|below|at least|at most) (-?[\d.]+)"
+"""Words that end in a bound."""
+_RULES: dict[str, Callable[..., Rule]] = {
+    r"reported: .*": lambda: Rule(_reported),
+    r".* is significantly (above|below) 0": _detected,
+    r".* is not significantly (above|below|different from) 0": _not_detected,
+    r".* lies between (\S+) and (\S+)": _within,
+    rf"{BOUND}, by the point estimate": _by_point,
+    rf"{BOUND}( and significant)?": _bounded,
+}
+
+
+def rule_of(words: str) -> Rule:
+    """Return the rule that a statement's last words name; `ValueError` where they name none."""
+    for pattern, rule in _RULES.items():
+        if named := re.fullmatch(pattern, words):
+            return rule(*named.groups())
+    raise ValueError(f"no rule ends in the words of '{words}'")

@@ -16,8 +16,8 @@ from faultpath_paper.claims.rules import (
     REFUTED,
     Ends,
     Judged,
-    Rule,
     points_decide,
+    rule_of,
 )
 from faultpath_paper.detection import detection, least_detectable, resampled
 from faultpath_paper.quantities.differences import Pair, together
@@ -82,12 +82,9 @@ class Statement:
 Statements: TypeAlias = tuple[Statement, ...]
 
 
-def stated(subject: str, quantity: Quantity, rule: Rule, paper: Printed | None = None) -> Statement:
-    """Return the statement that a rule decides from one quantity.
-
-    `subject` is the beginning of a sentence; differences are first minus second.
-    """
-    words = rule.words.format(subject)
+def stated(words: str, quantity: Quantity, paper: Printed | None = None) -> Statement:
+    """Return the statement that the rule of its last words decides from one quantity."""
+    rule = rule_of(words)
 
     def part(results: Results) -> StatementPart:
         contrast = quantity(results)
@@ -200,12 +197,11 @@ class Turned(NamedTuple):
         return Judged("undecided", why)
 
 
-def turns_down(subject: str, before: Pair, after: Pair, paper: Printed) -> Statement:
+def turns_down(words: str, before: Pair, after: Pair, paper: Printed) -> Statement:
     """Return the statement that an effect is detected above 0 before and below 0 after.
 
     `paper` is the change that the paper's figures give.
     """
-    words = f"{subject} turns from above 0 to below 0"
 
     def part(results: Results) -> StatementPart:
         one, two = together(results, before, after)

@@ -28,18 +28,20 @@ def noisy_wind(variant: str) -> Cell:
 FREE_L3 = Setting(environment="free-space", wind="L3")
 SELECTION_FREE_L3 = Setting(library=SELECTION, environment="free-space", wind="L3")
 
-# Each freeze beside the same cell without it.
-WIND_UPDATED = table_3.cell(table_3.TRAJECTORY, "free-space", "L3")
-WIND_FROZEN = Cell(FREE_L3, table_3.TRAJECTORY, (FREEZE_WIND,))
 CODE_UPDATED = table_2.cell("wm-a+dcc", 0.1)
-CODE_FROZEN = Cell(table_1.STILL, "wm-a+dcc", (*CODE_UPDATED.faults, FREEZE_CODE))
-WITHHELD_UPDATED = Cell(SELECTION_FREE_L3, table_3.WITHHELD)
-WITHHELD_FROZEN = Cell(SELECTION_FREE_L3, table_3.WITHHELD, (FREEZE_CODE,))
-
-CALIBRATION_WITHHELD = Cell(table_4.WINDY, "gru-withheld")
-"""The paper's is of seed 0."""
-TRAJECTORY_STILL = replace(table_3.cell(table_3.TRAJECTORY, "obstacles", "L0"), seeds=SEEDS)
-"""Table III prints it for seed 0; the claim about it is of all seeds."""
+CELLS = {
+    # Each freeze beside the same cell without it.
+    "wind-updated": table_3.cell(table_3.TRAJECTORY, "free-space", "L3"),
+    "wind-frozen": Cell(FREE_L3, table_3.TRAJECTORY, (FREEZE_WIND,)),
+    "code-updated": CODE_UPDATED,
+    "code-frozen": Cell(table_1.STILL, "wm-a+dcc", (*CODE_UPDATED.faults, FREEZE_CODE)),
+    "withheld-updated": Cell(SELECTION_FREE_L3, table_3.WITHHELD),
+    "withheld-frozen": Cell(SELECTION_FREE_L3, table_3.WITHHELD, (FREEZE_CODE,)),
+    "calibration-withheld": Cell(table_4.WINDY, "gru-withheld"),
+    # Table III prints it for seed 0; the claim about it is of all seeds.
+    "trajectory-still": replace(table_3.cell(table_3.TRAJECTORY, "obstacles", "L0"), seeds=SEEDS),
+}
+"""Cells that only the text is about; the paper's are of seed 0 unless it says otherwise."""
 
 CEILING = (
     *table_1.PREDICTORS,
@@ -55,12 +57,12 @@ def _planner(**others: str) -> Cell:
     return Cell(setting, "wm-a", quick=others.get("candidates") != "2048")
 
 
-REFERENCE_PLANNER = _planner()
 OTHER_PLANNERS = {
-    "1,024 candidates": _planner(candidates="1024"),
-    "2,048 candidates": _planner(candidates="2048"),
-    "mode-preserving sampler": _planner(sampler="mode-preserving"),
+    "1024-candidates": _planner(candidates="1024"),
+    "2048-candidates": _planner(candidates="2048"),
+    "mode-preserving": _planner(sampler="mode-preserving"),
 }
+PLANNERS = {"reference": _planner(), **OTHER_PLANNERS}
 
 PROBED = Recording(
     library=SELECTION, variant="true-parameter", options=Setting(library=SELECTION).options
@@ -68,8 +70,8 @@ PROBED = Recording(
 """Common obstacle histories of the selection library."""
 PROBES: dict[str, tuple[Quantity, tuple[str, ...]]] = {
     "calibration": ("position-response", (calibration(0.1),)),
-    "history shuffle": ("shuffle-response", ()),
-    "history exchange": ("position-response", ("history_code:shuffle",)),
+    "history-shuffle": ("shuffle-response", ()),
+    "history-exchange": ("position-response", ("history_code:shuffle",)),
 }
 """Quantity and faults of each probe: the steps of every history change places, or windows exchange
 their histories."""
@@ -110,13 +112,10 @@ PAGE = Page(
     more_cells=(
         *(noisy(model, error) for model in ("wm-a", "wm-a+dcc") for error in ERRORS),
         *(noisy_wind(variant) for variant in (table_3.GRU, table_3.ZERO)),
-        *(WIND_UPDATED, WIND_FROZEN, CODE_UPDATED, CODE_FROZEN, WITHHELD_UPDATED, WITHHELD_FROZEN),
-        CALIBRATION_WITHHELD,
-        TRAJECTORY_STILL,
+        *CELLS.values(),
         *(table_4.cell(method, condition) for method, condition in NINE),
         *map(of_seed, CEILING),
-        REFERENCE_PLANNER,
-        *OTHER_PLANNERS.values(),
+        *PLANNERS.values(),
     ),
     more_measurements=(
         *(response(model, probe) for model in ("wm-a", "wm-a+dcc") for probe in PROBES),

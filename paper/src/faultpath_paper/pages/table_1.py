@@ -32,15 +32,16 @@ WM_A_SEEN = Cell(SEEN_THROUGH, "wm-a")
 TRUE_PARAMETER_SEEN = Cell(SEEN_THROUGH, "true-parameter")
 WITH_TRUE_CLEARANCE = (WM_A_SEEN, TRUE_PARAMETER_SEEN)
 
-KEYS = {
-    DKI: "DKI",
-    WM_A: "WM-A",
-    WM_U: "WM-U",
-    TRUE_PARAMETER: "true-parameter",
-    WM_A_SEEN: "WM-A/true-clearance",
-    TRUE_PARAMETER_SEEN: "true-parameter/true-clearance",
+CELLS = {
+    "DKI": DKI,
+    "WM-A": WM_A,
+    "WM-U": WM_U,
+    "true-parameter": TRUE_PARAMETER,
+    "WM-A/true-clearance": WM_A_SEEN,
+    "true-parameter/true-clearance": TRUE_PARAMETER_SEEN,
 }
-"""Keys as published."""
+"""Cells by their keys as published."""
+KEYS = {cell: key for key, cell in CELLS.items()}
 
 
 def recording(cell: Cell) -> Recording:

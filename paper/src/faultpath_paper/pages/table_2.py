@@ -1,10 +1,11 @@
 """Table II: what calibration errors do to four models, and what uncertainty training recovers."""
 
 from faultpath.report.sentences import wording
-from faultpath_paper.cells import SEEDS, Cell, Printed, calibration, of_seed, published
-from faultpath_paper.entries import EntryGroup, centimetres, published_contrasts
+from faultpath_paper.cells import SEEDS, Cell, calibration, of_seed, published
+from faultpath_paper.entries import EntryGroup, centimetres
 from faultpath_paper.evidence.table import Measurement
-from faultpath_paper.page import Page, Rows, TableRow, differences, rates, table
+from faultpath_paper.page import Page, Rows, TableRow, rates, table
+from faultpath_paper.pages.grid import Grid
 from faultpath_paper.pages.table_1 import COMMON, STILL
 from faultpath_paper.quantities.windows import quantile
 
@@ -32,38 +33,16 @@ def error_under(error: float) -> Measurement:
     )
 
 
-_PAPER = published("table_2_calibration")
-_FIRST = _PAPER["WM-A_seed0"]
-
-
-def paper_rate(model: str, error: float) -> float:
-    """Return the success that the paper prints, percent."""
-    return _PAPER[NAMES[model]][ERRORS.index(error)]
-
-
-def paper_repair(baseline: str, error: float) -> Printed:
-    """Return what the paper prints of repair minus baseline, pp."""
-    name, at = NAMES[baseline], ERRORS.index(error)
-    low, high = _PAPER[f"{name}_ci95"][at]
-    return Printed(_PAPER[f"{name}_dcc_minus_baseline_pp"][at], (low, high))
-
-
-def _rates(model: str) -> TableRow:
-    return rates(NAMES[model], (cell(model, error) for error in ERRORS), _PAPER[NAMES[model]])
+GRID = Grid(cell, NAMES, ERRORS, published("table_2_calibration"))
+_FIRST = GRID.figures["WM-A_seed0"]
 
 
 def _matched(repair: str, baseline: str) -> Rows:
-    kinds = ("dcc_minus_baseline_pp", "ci95", "wins_losses")
-    printed = (_PAPER[f"{NAMES[baseline]}_{kind}"] for kind in kinds)
     return (
         TableRow(f"Matched {NAMES[baseline]} comparison, success (%)"),
-        _rates(baseline),
-        _rates(repair),
-        TableRow(f"{NAMES[repair]} minus {NAMES[baseline]} (pp)"),
-        differences(
-            ((cell(repair, error), cell(baseline, error)) for error in ERRORS),
-            published_contrasts(*printed),
-        ),
+        GRID.rates(baseline),
+        GRID.rates(repair),
+        *GRID.differences(repair, baseline, " (pp)"),
     )
 
 

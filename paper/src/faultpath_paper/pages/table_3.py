@@ -6,7 +6,8 @@ The paper averages some rows over three seeds at L3; all other entries use the f
 from faultpath.system import Status
 from faultpath_paper.cells import SEEDS, Cell, Setting, of_seed, published
 from faultpath_paper.entries import EntryGroup, Made
-from faultpath_paper.page import Page, Rows, TableRow, rates, table
+from faultpath_paper.page import Page, Rows, TableRow, table
+from faultpath_paper.pages.grid import Grid
 from faultpath_paper.results import Results
 
 LEVELS = ("L0", "L2", "L3")
@@ -53,25 +54,27 @@ _PAPER = published("table_3_wind")
 _HEADINGS = {"free-space": "Free space", "obstacles": "Obstacles"}
 
 
-def paper_rate(variant: str, environment: str, level: str) -> float:
-    """Return the success that the paper prints, percent."""
-    return _PAPER[environment.replace("-", "_")][ROWS[variant][1]][LEVELS.index(level)]
+def _grid(environment: str) -> Grid:
+    keys = {variant: key for variant, (_, key) in ROWS.items()}
+
+    def at(variant: str, level: str) -> Cell:
+        return cell(variant, environment, level)
+
+    return Grid(at, keys, LEVELS, _PAPER[environment])
+
+
+GRIDS = {environment: _grid(environment) for environment in ENVIRONMENTS}
 
 
 def _levels(environment: str) -> Rows:
-    papers = _PAPER[environment.replace("-", "_")]
-    rows = (
-        rates(label, (cell(variant, environment, level) for level in LEVELS), papers[key])
-        for variant, (label, key) in ROWS.items()
-    )
+    rows = (GRIDS[environment].rates(variant, label) for variant, (label, _) in ROWS.items())
     return TableRow(_HEADINGS[environment]), *rows
 
 
 def _unmet(variant: str, key: str) -> TableRow:
     papers = _PAPER["unseen_wind_subset_L3"][key]
     groups = (
-        _won(cell(variant, environment, "L3"), papers[environment.replace("-", "_")])
-        for environment in ENVIRONMENTS
+        _won(cell(variant, environment, "L3"), papers[environment]) for environment in ENVIRONMENTS
     )
     return TableRow(ROWS[variant][0], tuple(groups))
 

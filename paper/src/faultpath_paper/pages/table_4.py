@@ -1,12 +1,13 @@
 """Table IV: reconstructions of the wind under an isolated and under a shared calibration error."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from faultpath.report.sentences import wording
-from faultpath_paper.cells import SEEDS, Cell, Printed, Setting, calibration, published
-from faultpath_paper.entries import EntryGroup, bracket, of_quantity, published_contrasts
-from faultpath_paper.page import Columns, Page, Rows, TableRow, differences, rates, table
+from faultpath_paper.cells import SEEDS, Cell, Setting, calibration, published
+from faultpath_paper.entries import EntryGroup, bracket, of_quantity
+from faultpath_paper.page import Columns, Page, TableRow, table
+from faultpath_paper.pages.grid import Grid
 from faultpath_paper.quantities.differences import Effect, combined, succeeded, terminal_distance
 from faultpath_paper.results import Quantity
 
@@ -31,40 +32,20 @@ def cell(method: str, condition: str) -> Cell:
     return Cell(WINDY, method, CONDITIONS[condition], seeds=SEEDS)
 
 
-def change(first: str, second: str, effect: Effect) -> Quantity:
-    """Return how much more an effect is under the shared error than under the isolated one."""
-    shared, alone = (
-        _cells(first, second, condition) for condition in ("shared", "reconstruction-only")
-    )
-    return combined((1, shared), (-1, alone), effect=effect)
+GRID = Grid(cell, NAMES, tuple(CONDITIONS), published("table_4_shared_calibration"))
+FARTHER = GRID.figures["terminal_distance_GRU+DCC_minus_GRU_m"]
+"""Terminal goal distance of GRU+DCC minus GRU, as the paper prints it."""
 
 
-_PAPER = published("table_4_shared_calibration")
-
-
-def paper_rate(method: str, condition: str) -> float:
-    """Return the success that the paper prints, percent."""
-    return _PAPER[NAMES[method]][list(CONDITIONS).index(condition)]
-
-
-def paper_contrast(first: str, second: str, condition: str) -> Printed:
-    """Return what the paper prints of one method minus another, pp."""
-    paper, at = _PAPER[f"{NAMES[first]}_minus_{NAMES[second]}"], list(CONDITIONS).index(condition)
-    low, high = paper["ci95"][at]
-    return Printed(paper["pp"][at], (low, high))
-
-
-def _cells(first: str, second: str, condition: str) -> tuple[Cell, Cell]:
+def pair(first: str, second: str, condition: str) -> tuple[Cell, Cell]:
+    """Return two methods on an interface."""
     return cell(first, condition), cell(second, condition)
 
 
-def _contrast(first: str, second: str) -> Rows:
-    paper = _PAPER[f"{NAMES[first]}_minus_{NAMES[second]}"]
-    printed = published_contrasts(paper["pp"], paper["ci95"], paper["wins_losses"])
-    return (
-        TableRow(f"{NAMES[first]} minus {NAMES[second]}, success (pp)"),
-        differences((_cells(first, second, condition) for condition in CONDITIONS), printed),
-    )
+def change(first: str, second: str, effect: Effect) -> Quantity:
+    """Return how much more an effect is under the shared error than under the isolated one."""
+    shared, alone = (pair(first, second, where) for where in ("shared", "reconstruction-only"))
+    return combined((1, shared), (-1, alone), effect=effect)
 
 
 def last_column(label: str, group: EntryGroup, *below: str) -> Columns:
@@ -74,9 +55,9 @@ def last_column(label: str, group: EntryGroup, *below: str) -> Columns:
 
 
 def _shown(
-    quantity: Quantity, cells: Iterable[Cell], mean: float, ends: Sequence[float], digits: int
+    quantity: Quantity, cells: Iterable[Cell], paper: Mapping[str, Any], digits: int
 ) -> EntryGroup:
-    texts = wording.signed(mean, digits), bracket(ends, digits)
+    texts = wording.signed(paper["mean"], digits), bracket(paper["ci95"], digits)
     return of_quantity(quantity, cells, texts, digits)
 
 
@@ -86,11 +67,14 @@ def _changed(
     cells = [
         cell(method, condition) for method in (first, second) for condition in list(CONDITIONS)[1:]
     ]
-    return _shown(change(first, second, effect), cells, paper["mean"], paper["ci95"], digits)
+    return _shown(change(first, second, effect), cells, paper, digits)
 
 
-_FARTHER = _PAPER["terminal_distance_GRU+DCC_minus_GRU_m"]
-"""Terminal goal distance of GRU+DCC minus GRU, as the paper prints it."""
+def _farther(condition: str) -> EntryGroup:
+    cells = pair("gru+dcc", "gru", condition)
+    quantity = combined((1, cells), effect=terminal_distance)
+    return _shown(quantity, cells, FARTHER[condition], 2)
+
 
 PAGE = Page(
     "table-4",
@@ -98,32 +82,20 @@ PAGE = Page(
         table(
             "table-4",
             TableRow("Success (%)"),
-            *(
-                rates(name, (cell(method, condition) for condition in CONDITIONS), _PAPER[name])
-                for method, name in NAMES.items()
-            ),
-            *_contrast("gru+dcc", "gru"),
-            *_contrast("dob", "gru"),
-            *_contrast("dob", "gru+dcc"),
+            *map(GRID.rates, METHODS),
+            *GRID.differences("gru+dcc", "gru", ", success (pp)"),
+            *GRID.differences("dob", "gru", ", success (pp)"),
+            *GRID.differences("dob", "gru+dcc", ", success (pp)"),
             last_column(
                 "DOB minus GRU, shared minus reconstruction-only (pp)",
-                _changed("dob", "gru", succeeded, _PAPER["DOB_GRU_interaction_pp"]),
+                _changed("dob", "gru", succeeded, GRID.figures["DOB_GRU_interaction_pp"]),
                 "Score interval",
             ),
             TableRow("Terminal distance, secondary, GRU+DCC minus GRU (m)"),
-            Columns(
-                ("Mean difference", "95 % interval"),
-                tuple(
-                    _shown(combined((1, pair), effect=terminal_distance), pair, mean, ends, 2)
-                    for condition, mean, ends in zip(
-                        CONDITIONS, _FARTHER["mean"], _FARTHER["ci95"], strict=True
-                    )
-                    for pair in [_cells("gru+dcc", "gru", condition)]
-                ),
-            ),
+            Columns(("Mean difference", "95 % interval"), tuple(map(_farther, CONDITIONS))),
             last_column(
                 "Shared minus reconstruction-only (m)",
-                _changed("gru+dcc", "gru", terminal_distance, _FARTHER["shared_minus_isolated"], 2),
+                _changed("gru+dcc", "gru", terminal_distance, FARTHER["change"], 2),
             ),
         ),
     ),

@@ -4,7 +4,8 @@ from faultpath.report.sentences import wording
 from faultpath_paper.cells import SEEDS, Cell, calibration, published
 from faultpath_paper.entries import BLANK, EntryGroup, PublishedContrast, difference, measured
 from faultpath_paper.evidence.table import Measurement, Quantity
-from faultpath_paper.page import Columns, Page, TableRow, rates, table
+from faultpath_paper.page import Columns, Page, TableRow, table
+from faultpath_paper.pages.grid import Grid
 from faultpath_paper.pages.table_1 import recording
 from faultpath_paper.pages.table_4 import CONDITIONS, ERROR, METHODS, NAMES, WINDY
 
@@ -49,35 +50,31 @@ def negative(method: str, condition: str) -> Cell:
     return Cell(WINDY, method, NEGATIVE[condition])
 
 
-_ERRORS, _OFFSET = published("table_6_compensation").values()
-_WIND_TERM = _ERRORS["GRU_wind_term_only"]
+_PRINTED, _OFFSET = published("table_6_compensation").values()
+_NAMES = {"gru": "GRU", "gru+dcc": "GRU+DCC"}
+GRID = Grid(negative, _NAMES, tuple(NEGATIVE), _OFFSET)
+PRINTED: dict[tuple[str, ...], float] = {
+    **{
+        ("acceleration-error", method, interface): figure
+        for method in METHODS
+        for interface, figure in zip(INTERFACES, _PRINTED[NAMES[method]], strict=True)
+    },
+    **{
+        ("wind-term-error", "gru", interface): figure
+        for interface, figure in _PRINTED["GRU_wind_term_only"].items()
+    },
+}
+"""Errors that the paper prints, m/s²."""
 
 
-def paper_acceleration(method: str, interface: str) -> float:
-    """Return the analytic acceleration error that the paper prints, m/s²."""
-    return _ERRORS[NAMES[method]][list(INTERFACES).index(interface)]
-
-
-def paper_negative(method: str, condition: str) -> float:
-    """Return the success under the negative offset that the paper prints, percent."""
-    return _OFFSET[NAMES[method]][list(NEGATIVE).index(condition)]
-
-
-def _accelerations(method: str) -> TableRow:
+def _row(label: str, quantity: Quantity, method: str) -> TableRow:
     groups = (
-        measured(errors("acceleration-error", method, interface), paper)
-        for interface, paper in zip(INTERFACES, _ERRORS[NAMES[method]], strict=True)
+        measured(errors(quantity, method, interface), PRINTED[quantity, method, interface])
+        if (quantity, method, interface) in PRINTED
+        else BLANK
+        for interface in INTERFACES
     )
-    return TableRow(NAMES[method], tuple(groups))
-
-
-def _wind_term(interface: str, key: str) -> EntryGroup:
-    return measured(errors("wind-term-error", "gru", interface), _WIND_TERM[key])
-
-
-def _negative_rates(method: str) -> TableRow:
-    cells = (negative(method, condition) for condition in NEGATIVE)
-    return rates(f"{NAMES[method]} (%)", cells, _OFFSET[NAMES[method]])
+    return TableRow(label, tuple(groups))
 
 
 def _negative_difference(condition: str) -> EntryGroup:
@@ -92,21 +89,12 @@ PAGE = Page(
     (
         table(
             "table-6a",
-            *map(_accelerations, METHODS),
-            TableRow(
-                "GRU, wind term alone",
-                (
-                    BLANK,
-                    _wind_term("reconstruction-only", "isolated"),
-                    BLANK,
-                    _wind_term("shared", "shared"),
-                ),
-            ),
+            *(_row(name, "acceleration-error", method) for method, name in NAMES.items()),
+            _row("GRU, wind term alone", "wind-term-error", "gru"),
         ),
         table(
             "table-6b",
-            _negative_rates("gru"),
-            _negative_rates("gru+dcc"),
+            *(GRID.rates(method, f"{name} (%)") for method, name in GRID.names.items()),
             Columns(
                 (
                     "",
