@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from hashlib import blake2b
 from importlib import resources
+from unicodedata import east_asian_width
 
 from markupsafe import Markup
 
@@ -27,7 +28,9 @@ _SIZES = {"small": 11.0, "head": 13.0}
 
 def text_width(text: str, size: float) -> float:
     """Return a safe estimate of how wide `text` is at `size` pixels."""
-    return sum(_ADVANCE.get(c, 640) for c in text) * size / 1000.0
+    return sum(_ADVANCE.get(c, 1000 if east_asian_width(c) in "WF" else 640) for c in text) * (
+        size / 1000.0
+    )
 
 
 def shortened(text: str, width: float, size: float) -> str:
