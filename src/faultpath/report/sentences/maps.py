@@ -50,9 +50,9 @@ def sentences(result: MapResult) -> tuple[str, ...]:
     if result.scenes < MIN_SCENES:
         return (_distribution(result),)
     ahead = {sign: sum(point.sign == sign for point in result.points) for sign in (-1, 1)}
+    holds = "What is significant holds" if any(ahead.values()) else "The intervals hold"
     return (
-        f"What is significant holds for {scenes_like_these(result.facts)}, at the pairs of errors "
-        "that were run.",
+        f"{holds} for {scenes_like_these(result.facts)}, at the pairs of errors that were run.",
         f"Of {run} pairs of errors run, {result.winner(-1)} is significantly ahead at {ahead[-1]} "
         f"and {result.winner(1)} at {ahead[1]}; at {run - ahead[-1] - ahead[1]} neither.",
         *(
