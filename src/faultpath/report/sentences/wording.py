@@ -140,8 +140,10 @@ def sentence(words: str) -> str:
 
 
 def seeds_run(facts: ComparisonFacts) -> str:
-    """Return `, seeds 0, 1`; nothing for results of other tools that name no seed but 0."""
-    return "" if facts.judged and facts.seeds == (0,) else f", {seeds(facts.seeds)}"
+    """Return `, seeds 0, 1`; nothing for results of other tools that name no seed but 0, nor where
+    seeds only number the trials of a task."""
+    unnamed = facts.unit == "task" or (facts.judged and facts.seeds == (0,))
+    return "" if unnamed else f", {seeds(facts.seeds)}"
 
 
 def seeds(values: tuple[int, ...]) -> str:
