@@ -15,7 +15,6 @@ from faultpath.report.sentences import wording
 from faultpath.report.tables import MISSING, Entry, Table, line
 from faultpath.stats.estimate import Sign
 from faultpath_paper.answers import Reproduction
-from faultpath_paper.entries import bracket
 from faultpath_paper.pages.table_4 import NAMES, PAGE, paper_contrast
 from faultpath_paper.report import words
 
@@ -170,7 +169,7 @@ def table_of(cases: Sequence[Case]) -> Table:
         paper_contrast(REPAIR, BASELINE, condition)
         for condition in ("reconstruction-only", "shared")
     ]
-    printed = [f"{wording.signed(c.value)} {bracket(c.interval or ())}" for c in theirs]
+    printed = [f"{wording.signed(c.value)} {wording.bracket(c.interval or ())}" for c in theirs]
     rows = [
         line(
             case.place[:1].upper() + case.place[1:],

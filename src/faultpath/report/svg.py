@@ -242,7 +242,7 @@ def shade(difference: float) -> str:
     return next(opacity for least, opacity in SHADES if abs(difference) >= least)
 
 
-def draw_scale(svg: Svg, width: float, labels: Sequence[str], hatch: str = "") -> None:
+def draw_scale(svg: Svg, width: float, hatch: str = "") -> None:
     """Draw a piece for each shade of the baseline, hatched, and of the repair, with labels between
     the pieces."""
     shades = [opacity for _, opacity in SHADES]
@@ -252,7 +252,7 @@ def draw_scale(svg: Svg, width: float, labels: Sequence[str], hatch: str = "") -
         svg.path(piece, side, fill_opacity=opacity)
         if hatch and column < len(shades):
             svg.path(piece, "", fill=hatch, fill_opacity="0.5")
-    for column, label in enumerate(labels, 1):
+    for column, label in enumerate(("−30", "−10", "0", "+10", "+30"), 1):
         svg.text(column * width, 63, label, "small soft", "middle")
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 from faultpath.report.sentences import wording
 from faultpath_paper.cells import SEEDS, Cell, Printed, Setting, calibration, published
-from faultpath_paper.entries import EntryGroup, bracket, of_quantity, published_contrasts
+from faultpath_paper.entries import EntryGroup, of_quantity, published_contrasts
 from faultpath_paper.page import Columns, Page, Rows, TableRow, differences, rates, table
 from faultpath_paper.quantities.differences import Effect, combined, succeeded, terminal_distance
 from faultpath_paper.results import Quantity
@@ -76,7 +76,7 @@ def last_column(label: str, group: EntryGroup, *below: str) -> Columns:
 def _shown(
     quantity: Quantity, cells: Iterable[Cell], mean: float, ends: Sequence[float], digits: int
 ) -> EntryGroup:
-    texts = wording.signed(mean, digits), bracket(ends, digits)
+    texts = wording.signed(mean, digits), wording.bracket(ends, digits)
     return of_quantity(quantity, cells, texts, digits)
 
 

@@ -76,9 +76,7 @@ def figure(of: ClaimVerdict | StatementPart) -> str:
 
 def interval(of: ClaimVerdict | StatementPart) -> str:
     """Return `[48.3, 66.3]`, or nothing without an interval."""
-    if of.interval is None:
-        return ""
-    return f"[{', '.join(wording.plain(end, _DIGITS.get(of.unit, 2)) for end in of.interval)}]"
+    return wording.bracket(of.interval, _DIGITS.get(of.unit, 2)) if of.interval else ""
 
 
 def estimate(of: ClaimVerdict | StatementPart) -> str:
