@@ -134,8 +134,8 @@ def _reach(result: AuditResult) -> Iterator[str]:
         yield _PAIRED[facts.pairing]
         yield (
             "If both versions were equally good, at most 5 % of such comparisons would report any "
-            "difference, provided that the number of scenes was fixed before anybody looked: other "
-            "tools do not say whether it was."
+            f"difference, provided that the number of {facts.unit}s was fixed before anybody "
+            "looked: other tools do not say whether it was."
         )
     run = len(facts.seeds)
     yield from phrases.for_trainings(result)

@@ -61,7 +61,7 @@ def sentences(result: MapResult) -> tuple[str, ...]:
             f"{result.winner(-sign)}."
             for module, sign, sizes in _turned(result)
         ),
-        *(_flipped(result, flip) for flip in result.flips),
+        *(_flipped(result, flip) for flip in result.flips if any(ahead.values())),
         _distribution(result),
         _expected(result),
     )
