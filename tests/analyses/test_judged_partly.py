@@ -6,6 +6,7 @@ import pytest
 from faultpath.analyses.decide import decide
 from faultpath.analyses.judging import pair_results
 from faultpath.analyses.model import AuditResult
+from faultpath.report.audit_tables import ALL, by_quantity, markdown_table
 from faultpath.report.sentences import words
 from faultpath.run.received.question import JudgeQuestion
 from faultpath.run.received.results import Received
@@ -45,6 +46,18 @@ def test_two_scenes_with_an_extra_seed_leave_the_other_28():
     assert said == (
         "2 scenes have more trials than the others, for example s3: the extra trials are left out."
     )
+
+
+def test_tasks_are_called_tasks():
+    """They were scenes: of 3 tasks with 10 scenes each, "too few scenes: 3 compared"."""
+    few = judged([(f"t{n % 3}", f"s{n}", "") for n in range(30)], cluster="task")
+    assert words(few).headline.startswith("Too few tasks: 3 compared")
+    whole = " ".join((*words(few).sentences, *words(few).would_change))
+    assert "Too few tasks: 3 tasks compared" in whole
+    assert "More tasks: " in whole
+    assert "Tasks" in {line.label for line in by_quantity(few, ALL).lines}
+    many = judged([(f"t{n % 10}", f"s{n}", "") for n in range(30)], cluster="task")
+    assert markdown_table(many).startswith("**new against old: 10 tasks**")
 
 
 def test_a_scene_without_a_seed_counts_by_its_other_seeds():

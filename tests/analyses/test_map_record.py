@@ -14,6 +14,7 @@ from faultpath.analyses.map.lattice import COARSE, SHOWN, UNITS, lattice, surfac
 from faultpath.analyses.map.model import MapResult
 from faultpath.analyses.map.surface import Combined, Differences
 from faultpath.report.sentences import words
+from faultpath.report.sentences.maps import size_label
 
 X, Y = np.array(lattice(SHOWN), dtype=float).T / UNITS
 DECIDES = re.compile(r"(new|old) (is|does|is expected)")
@@ -123,6 +124,18 @@ def test_ahead_is_said_only_at_pairs_of_errors_that_were_run(strong: int, sign: 
     if not strong:
         said = "At none of 25 pairs of errors is the difference significant."
     assert words(made).headline == said
+
+
+def test_where_one_version_is_ahead_at_all_pairs_nothing_is_said_of_others() -> None:
+    made = concluded(differences(lambda x, y: (np.ones(60), np.zeros(60)), lattice(COARSE)))
+    assert words(made).headline == "new is ahead at 25 of 25 pairs of errors."
+
+
+def test_no_error_has_no_sign() -> None:
+    facts = record(alike(8)).facts.model_copy(update={"relative": False, "unit": "m"})
+    assert [size_label(facts, size) for size in (0.0, 0.2, -0.2)] == ["0 m", "+0.2 m", "−0.2 m"]
+    for unit in ("", "1"):
+        assert size_label(facts.model_copy(update={"unit": unit}), 1.0) == "+1"
 
 
 @pytest.mark.parametrize("name", ["sizes", "difference", "sign"])

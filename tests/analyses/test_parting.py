@@ -183,6 +183,15 @@ def test_a_sentence_says_where_two_trials_part(case: str) -> None:
     assert Parting.model_validate_json(parting_of.model_dump_json()) == parting_of
 
 
+def test_further_states_that_differ_are_counted() -> None:
+    """They were "2 more quantitys"."""
+    told = parting(shown(), without(OLD, "push"), heard("new", speedometer=(3, -8)))
+    state = told.first["state"].model_copy(update={"others": 2})
+    said = parted(FACTS, told.model_copy(update={"first": {"state": state}}))
+    assert "(and 2 more states differ)" in said
+    assert "no recorded reading differs" in said
+
+
 def test_a_channel_is_compared_whatever_feeds_it() -> None:
     """What a fault does to one trial alone is compared only until the sources differ themselves."""
     told = parting(shown(wind="zero_wind"), OLD, without(heard("new"), "observed_wind"))

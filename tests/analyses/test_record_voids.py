@@ -62,7 +62,7 @@ def test_what_hangs_on_one_trial_is_open_and_what_does_not_is_decided():
     assert "the trials that ran favour new (+5.1 [1.1, 11.3] pp, p = 0.023" in left_open
     assert "holds if failing has nothing to do with how a trial would have ended" in left_open
     assert (
-        "at least 1 of new that failed have to run, and come out as the others did (the same"
+        "failed trials have to run and come out as the others did, at least 1 of new (the same"
         in left_open
     )
     safe = audit((lost, [*[NO] * 20, *rest[15:], YES]))

@@ -1,10 +1,20 @@
 """What a record says, case by case, as it was approved."""
 
 import pytest
-from outcome_tables import Counts, conditions, facts, question, record, table, three
+from outcome_tables import (
+    Counts,
+    conditions,
+    facts,
+    question,
+    record,
+    sequential,
+    table,
+    three,
+)
 from outcomes import trial
 
 from faultpath.analyses.decide import decide
+from faultpath.analyses.facts import EarlierAnalysis
 from faultpath.analyses.model import CORRECT, SHARED, AuditResult
 from faultpath.core.errors import UserError
 from faultpath.report.sentences import words
@@ -105,6 +115,88 @@ def test_a_headline_does_not_name_one_of_several_equal_counts():
     assert words(record(cells)).headline.endswith(
         "(under 2 of these conditions in 9 scenes each, never the other way)."
     )
+
+
+def test_a_headline_counts_scenes_of_no_effect_that_it_does_not_name():
+    """It named the condition where old was ahead, behind a sentence that new is ahead."""
+    cells = {CORRECT: GAIN, "a": (60, 0, 9), SHARED: LEVEL}
+    made = record(cells, primary=CORRECT)
+    assert made.effect("a").leads
+    ahead = "new is ahead of old under correct inputs"
+    assert words(made).headline == (
+        f"{ahead}; no difference is significant under the shared fault."
+    )
+    few = words(record({**cells, CORRECT: (60, 9, 0)}, primary=CORRECT)).headline
+    assert few.startswith(ahead)
+    assert few.endswith(" (under correct inputs in 9 scenes, never the other way).")
+
+
+def test_every_condition_is_not_said_where_one_has_no_pair():
+    cells = dict.fromkeys((CORRECT, "a", SHARED), GAIN)
+    made = decide(question(), facts(), conditions(*cells), lost(cells, "a"))
+    assert words(made).headline == (
+        "new is ahead of old under the shared fault and under correct inputs."
+    )
+
+
+@pytest.mark.parametrize("end", ["floor", "ceiling"])
+def test_that_both_always_end_alike_holds_under_every_condition(end):
+    counts = (0, 2, 2) if end == "floor" else (96, 2, 2)
+    how = "fail" if end == "floor" else "succeed"
+    assert words(three(counts, counts, counts)).headline == (
+        f"Both nearly always {how} under every condition."
+    )
+
+
+def test_a_sequential_audit_of_all_effects_is_not_told_to_ask_for_all():
+    """The advice was the option with which it had run, where effects were shown to be small."""
+    cells = dict.fromkeys((CORRECT, "observer", SHARED), (50, 0, 0))
+    about = facts(order=sequential())
+    for when, advised in (("all-decided", False), ("decided", True)):
+        asked = question(stop_when=when, margin_pp=20.0)
+        made = decide(asked, about, conditions(*cells), table(cells))
+        assert made.stopped.reached
+        assert any("--stop-when" in text for text in words(made).would_change) == advised
+        assert in_short(made, made.effects[-1]) == "the two differ by less than 20 pp"
+        assert "further from 0" not in answers(made)["How sure"], "it stopped for how little it is"
+        assert "The intervals hold for" in answers(made)["How sure"], "nothing is significant"
+    gain = dict.fromkeys(cells, GAIN)
+    made = decide(question(stop_when="decided"), about, conditions(*gain), table(gain))
+    assert "further from 0 than the truth" in answers(made)["How sure"]
+
+
+def test_an_audit_that_was_sequential_is_not_told_to_be():
+    earlier = (EarlierAnalysis(scenes=50, primary=CORRECT),)
+    for order, told in ((sequential(), False), (None, True)):
+        asked = question(stop_when="decided" if order else None)
+        cells = dict.fromkeys((CORRECT, "observer", SHARED), GAIN)
+        made = decide(asked, facts(order=order), conditions(*cells), table(cells))
+        (text,) = words(made.model_copy(update={"earlier": earlier})).findings
+        assert ("--stop-when" in text) == told
+        assert text.endswith(".")
+
+
+def test_trainings_say_nothing_of_a_fault_that_never_acted_and_favour_nobody_in_a_tie():
+    tie = [(40, 30, 2), (40, 2, 30), (42, 28, 3), (42, 3, 28), (39, 5, 5)]
+    cells = {CORRECT: TRAININGS, "observer": TRAININGS, SHARED: tie}
+    made = record(cells, altered={"observer": 0}, trained=True, generalise="models")
+    sure = answers(made)["How sure"]
+    assert "With the fault at the observer alone" not in sure
+    assert (
+        "Under the shared fault, each version is ahead in 2 of 5 trainings, neither in 1, p = 1.000"
+    ) in sure
+    none = [effect.model_copy(update={"per_seed": (0.0,) * 5}) for effect in made.effects]
+    sure = answers(made.model_copy(update={"effects": tuple(none)}))["How sure"]
+    assert "neither version is ahead in any of 5 trainings, p = 1.000" in sure
+
+
+def test_a_version_in_which_the_fault_changed_nothing_is_said_so():
+    made = three(GAIN, GAIN, GAIN)
+    observer = made.conditions[1].model_copy(update={"baseline_readers": ("observer.tap",)})
+    both = made.model_copy(update={"conditions": (made.conditions[0], observer)})
+    counts = tuple(count for count in made.counts if count.condition != SHARED)
+    sure = answers(both.model_copy(update={"counts": counts}))["How sure"]
+    assert "the fault changed something in none of 100 trials of old." in sure
 
 
 @pytest.mark.parametrize("kept", [4, 5])

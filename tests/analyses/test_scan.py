@@ -206,6 +206,8 @@ def test_seeds_count_as_one_scene_and_failed_trials_are_left_out():
     ]
     assert record.failed == 4
     assert [text for text in words(record).sentences if text.startswith("4 trials failed")]
+    once = words(record.model_copy(update={"failed": 1})).sentences
+    assert [text for text in once if text.startswith("1 trial failed, and its scene does not")]
     system.failing = {(pair, f"s{i:04d}") for i in range(400)}
     with pytest.raises(UserError, match="is left, because all failed"):
         scanned(system)

@@ -121,6 +121,11 @@ def test_findings_and_matched_properties_are_counted_apart(ledger: Ledger) -> No
     assert "2 findings that this run is about" in headline(some, "paper")
     assert "properties" not in headline(some, "paper")
     assert headline(ledger.model_copy(update={"claims": ()}), "paper")
+    properties = [c for c in ledger.claims if (c.kind, c.verdict) == ("platform", "confirmed")]
+    for count, said in ((1, "Of 1 property that"), (2, "Of 2 properties that")):
+        own = headline(ledger.model_copy(update={"claims": tuple(properties[:count])}), "paper")
+        hold = "1 holds" if count == 1 else "2 hold"
+        assert own == f"{said} the simulator was matched to, {hold} on these scenes"
 
 
 @pytest.fixture(scope="module")

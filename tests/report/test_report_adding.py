@@ -11,6 +11,7 @@ from faultpath.analyses.pairs import choose, read_pairs
 from faultpath.report.adding import adding, adding_panels
 from faultpath.report.html import report_page
 from faultpath.report.inputs import ReportInput
+from faultpath.report.svg import text_width
 from faultpath.run.check.recording import added
 from faultpath.run.store.tables import TrialAddress
 
@@ -103,6 +104,21 @@ def test_a_few_large_values_do_not_squeeze_the_others_and_are_cut_at_the_axes(he
             inside = [y for y in ys if float(top) < y < float(top) + float(height)]
             assert len(ys) > len(inside) > 0
             assert not {float(top), float(top) + float(height)} & set(ys)
+
+
+def test_the_name_of_a_version_and_how_its_trial_ended_keep_apart(heard) -> None:
+    """A long way to say the end lay on the name."""
+    shown = adding(heard, pairs_of(heard))
+    long = replace(
+        shown,
+        conditions=tuple(
+            (title, tuple(replace(of, name="n" * 60, ended="e" * 60) for of in variants))
+            for title, variants in shown.conditions
+        ),
+    )
+    for panel in adding_panels(long):
+        (name, end), *_ = re.findall(r"<text[^>]*>(n+…).*?<text[^>]*>(e+…)", panel)
+        assert 54 + text_width(name, 12) < 308 - text_width(end, 11)
 
 
 def _jumped(values):

@@ -5,11 +5,12 @@ from collections.abc import Callable
 from dataclasses import replace
 from io import StringIO
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from rich.console import Console
 
+from faultpath.analyses.effects import Missing
 from faultpath.analyses.facts import ComparisonFacts
 from faultpath.analyses.model import Condition
 from faultpath.report.compared import Compared, differing, titles, together
@@ -91,6 +92,36 @@ def test_what_is_said_is_what_was_approved(name: str, one_seed: ReportInput, app
     facts = [f"{fact}: {' | '.join(values)}" for fact, values in dict(differing(runs)).items()]
     parts = (headline(runs), *sentences(runs), "", *facts, "", markdown_grid(effects(runs)))
     approved(name, "\n".join(parts))
+
+
+@pytest.mark.parametrize(
+    ("update", "said"),
+    [
+        ({"rates": (96.0, 95.0)}, "gru ahead (ceiling)"),
+        ({"missing": Missing(uneven=True)}, "gru ahead (failed trials)"),
+        ({"corrected_p": None, "sign": 0}, "fault never acted"),
+    ],
+)
+def test_a_headline_of_sizes_says_what_keeps_an_effect_out_of_headlines(
+    one_seed: ReportInput, update: dict[str, Any], said: str
+) -> None:
+    """An effect at the ceiling stood there as any other, and failed trials as "at the" these."""
+    sign = int(update.pop("sign", -1))
+    runs = [run(one_seed, i, fault=f"calibration={s}") for i, s in enumerate((0.1, 0.2), 1)]
+    runs = [signed(decided(of, changes=()), "shared", sign, p_value=1e-5, **update) for of in runs]
+    tested = together(runs)
+    assert headline(tested).endswith(f", under the shared fault: {said} at every size")
+    apart = run(one_seed, 1), signed(run(one_seed, 2, fault="mass=-0.1"), "shared", 1, **update)
+    assert "(at the failed" not in " ".join(sentences(apart))
+
+
+def test_sizes_without_a_pair_are_not_called_insignificant(
+    one_seed: ReportInput, make: Callable[..., ReportInput]
+) -> None:
+    sources = (make(lost="shared"), one_seed)
+    runs = [run(of, i, fault=f"calibration={i}") for i, of in enumerate(sources, 1)]
+    runs = [decided(of, changes=()) for of in runs]
+    assert "every pair missing at 1; " in headline(runs)
 
 
 def test_runs_that_are_alike_differ_in_nothing(one_seed: ReportInput) -> None:

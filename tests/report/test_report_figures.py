@@ -5,7 +5,7 @@ from typing import Literal
 from xml.etree import ElementTree
 
 from faultpath.analyses.model import Ahead, AuditResult, ConditionBreakEven
-from faultpath.analyses.pairs import read_pairs
+from faultpath.analyses.pairs import PairKind, read_pairs
 from faultpath.report.effects import (
     effect_rows,
     panel,
@@ -113,3 +113,18 @@ def test_long_labels_are_cut() -> None:
     cut = shortened("a_very_long_name_indeed", 60, 12)
     assert cut.endswith("…")
     assert text_width(cut, 12) <= 60
+
+
+def test_wide_letters_count_as_wide() -> None:
+    assert text_width("推定器", 12) == 36
+    assert text_width(shortened("推定器" * 9, 60, 12), 12) <= 60
+
+
+def test_the_counts_of_a_grid_with_many_pairs_fit_into_its_width() -> None:
+    """Of 10,000 scenes with three seeds the last count was cut off."""
+    for most, lines in ((99, 1), (30_000, 2), (300_000, 2)):
+        drawn = pair_grid("shared", (), dict.fromkeys(PairKind, most), {})
+        texts = re.findall(r'<text[^>]*class="small soft"[^>]*>([^<]*)', drawn)
+        assert len(texts) == lines
+        assert max(text_width(text, 11) for text in texts) <= 390
+        assert sum(text.count(str(most)) for text in texts) == len(PairKind)

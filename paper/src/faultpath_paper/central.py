@@ -15,7 +15,6 @@ from faultpath.report.sentences import wording
 from faultpath.report.tables import MISSING, Entry, Table, line
 from faultpath.stats.estimate import Sign
 from faultpath_paper.answers import Reproduction
-from faultpath_paper.entries import bracket
 from faultpath_paper.pages.table_4 import GRID, NAMES, PAGE
 from faultpath_paper.report import words
 
@@ -167,7 +166,9 @@ def by_training(case: Case) -> str:
 def table_of(cases: Sequence[Case]) -> Table:
     """Return the question's numbers run by run, the paper's below."""
     theirs = (GRID.contrast(REPAIR, BASELINE, where) for where in GRID.columns[1:])
-    printed = [f"{wording.signed(c.value)} {bracket(c.interval or ())}" for c in theirs if c]
+    printed = [
+        f"{wording.signed(c.value)} {wording.bracket(c.interval or ())}" for c in theirs if c
+    ]
     rows = [
         line(
             case.place[:1].upper() + case.place[1:],

@@ -55,12 +55,6 @@ def printed(figure: Figure, digits: int = 1) -> str:
     return wording.plain(figure, 0 if isinstance(figure, int) else digits)
 
 
-def bracket(ends: Sequence[float], digits: int = 1) -> str:
-    """Return an interval of the paper as ours are written."""
-    low, high = ends
-    return f"[{wording.plain(low, digits)}, {wording.plain(high, digits)}]"
-
-
 def success(cell: Cell, paper: Figure = "") -> EntryGroup:
     """Success in percent: one decimal for a mean over seeds, none for one seed, as in the paper."""
 
@@ -128,7 +122,7 @@ def of_quantity(
 
 def interval_of(effect: Contrast, digits: int = 1) -> str:
     """Return an interval as the paper's are written; a dash without one."""
-    return bracket(effect.interval, digits) if effect.interval else MISSING
+    return wording.bracket(effect.interval, digits) if effect.interval else MISSING
 
 
 @dataclass(frozen=True)
@@ -148,7 +142,9 @@ def published_contrasts(
 ) -> tuple[PublishedContrast, ...]:
     """Return contrasts that the paper prints in a row: pp, ends of intervals, `2:15` by seed."""
     return tuple(
-        PublishedContrast(wording.signed(value), bracket(ends), wins_losses="/".join(counts))
+        PublishedContrast(
+            wording.signed(value), wording.bracket(ends), wins_losses="/".join(counts)
+        )
         for value, ends, counts in zip(pp, ci95, wins_losses, strict=True)
     )
 

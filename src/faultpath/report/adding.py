@@ -11,7 +11,7 @@ from faultpath.analyses.model import CORRECT, where
 from faultpath.analyses.pairs import Pair, by_scene, choose
 from faultpath.report.inputs import ReportInput
 from faultpath.report.sentences import wording
-from faultpath.report.svg import Axis, Point, Svg, covering, draw_axes, tick_label
+from faultpath.report.svg import Axis, Point, Svg, covering, draw_axes, text_width, tick_label
 from faultpath.run.store.signals import TOGETHER, Signal
 from faultpath.run.store.tables import TrialAddress
 from faultpath.system.outcome import Outcome, Status
@@ -23,6 +23,8 @@ _WIDTH, _LEFT, _RIGHT = 308.0, 38.0, 14.0
 _TOP, _PLOT, _PITCH = 44.0, 96.0, 136.0
 _SIGN = {Status.SUCCESS: "M-5 0l3 4l7 -9", Status.CRASH: "M-5 -5l10 10M5 -5l-10 10"}
 _OTHER = "M-4 -4h8v8h-8Z"
+_NAME = 110.0
+"""Width of the longest name of a version."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +67,8 @@ class Adding:
     @property
     def longest_s(self) -> float:
         """Time that the longest trial took."""
-        return max(variant.trial.time_s for _, variants in self.conditions for variant in variants)
+        times = (variant.trial.time_s for _, variants in self.conditions for variant in variants)
+        return max(*times, self.dt_s)
 
 
 def adding(source: ReportInput, pairs: Sequence[Pair]) -> Adding | None:
@@ -150,8 +153,9 @@ def adding_panels(shown: Adding) -> list[Markup]:
             top = _TOP + _PITCH * place
             y = upward.at(top + _PLOT, top)
             svg.text(0, top - 10, variant.role, "small soft")
-            svg.text(54, top - 10, variant.name, f"bold {variant.role}", room=130)
-            svg.text(_WIDTH, top - 10, variant.ended, "small soft", "end")
+            svg.text(54, top - 10, variant.name, f"bold {variant.role}", room=_NAME)
+            left = 54 + min(_NAME, text_width(variant.name, 12)) + 8
+            svg.text(_WIDTH, top - 10, variant.ended, "small soft", "end", room=_WIDTH - left)
             draw_axes(svg, x, y, 4, x.ticks(4) if variant is variants[-1] else ())
             svg.text(_LEFT - 6, y.start + 14, shown.unit, "small soft", "end")
             with svg.group(

@@ -21,7 +21,7 @@ ALL = (
 )
 _MEANS = {
     "power": "the true difference that 8 of 10 such audits would find",
-    "scenes": "scenes in which both versions have a trial",
+    "scenes": "those in which both versions have a trial",
     "void": "pairs of trials that count for neither version",
     "break-even": "how often the fault must occur for neither version to be ahead",
 }
@@ -50,7 +50,7 @@ def _quantities(
             [_p(e.corrected_p) for e in effects],
         ),
         "ahead": ("Ahead", [version_ahead(result, e) for e in effects]),
-        "scenes": ("Scenes", [str(e.scenes) for e in effects]),
+        "scenes": (f"{capital(result.facts.unit)}s", [str(e.scenes) for e in effects]),
         "void": ("Void pairs", list(map(_missing_pairs, effects))),
         "break-even": ("Break-even, %", _break_evens(result, result.break_even)),
         "mcnemar": ("p, exact McNemar", [_p(e.mcnemar_p) for e in effects]),
@@ -90,7 +90,8 @@ def version_ahead(result: AuditResult, effect: Effect) -> Entry:
         return Entry(text="not tested")
     variant = result.winner(effect.sign) if effect.sign else "not shown"
     p = adjusted(result, effect) if only_alone(effect) else ""
-    return Entry(text=variant, aside=", ".join(filter(None, (effect.extreme, p))))
+    aside = wording.reservation(effect)
+    return Entry(text=variant, aside=", ".join(filter(None, (aside, p))))
 
 
 def by_condition(result: AuditResult, names: Sequence[str], title: str = "") -> Table:
@@ -143,13 +144,13 @@ def markdown_table(result: AuditResult) -> str:
     what = (
         f"{question.repair} against {question.baseline} on {facts.system}, fault {question.fault}"
     )
-    scenes = f"scenes of {facts.library}"
     if facts.judged:
         under = f", {question.fault}" if question.fault else ""
-        what, scenes = f"{question.repair} against {question.baseline}{under}", f"{facts.unit}s"
-    title = f"{what}: {phrases.scenes_run(result)} {scenes}{wording.seeds_run(facts)}"
+        what = f"{question.repair} against {question.baseline}{under}"
+    library = "" if facts.judged else f" of {facts.library}"
+    title = f"{what}: {phrases.scenes_run(result)}{library}{wording.seeds_run(facts)}"
     hypotheses, sets = result.testing.hypotheses, len(result.break_evens)
-    corrected = f"Holm's correction is for {hypotheses} contrasts."
+    corrected = f"Holm's correction is for {counted(hypotheses, 'contrast')}."
     if sets > 1:
         corrected += (
             f" Of {sets} break-even sets each is wrong in at most 5 % of audits, one or another of "
@@ -157,17 +158,19 @@ def markdown_table(result: AuditResult) -> str:
         )
     if result.stopped is not None:
         corrected = (
-            "The audit was sequential: intervals and p-values hold at whatever scene it stopped. "
-            f"{counted(hypotheses, 'contrast')} share the error rate"
-            f"{', half of it for the primary one' if hypotheses > 1 else ''}."
+            "The audit was sequential: intervals and p-values hold at whatever scene it stopped."
         )
+        if hypotheses > 1:
+            corrected += (
+                f" Its {hypotheses} contrasts share the error rate, half of it for the primary one."
+            )
     tests = f"Tests: {facts.tests}. " if facts.tests else ""
     notes = (
         f"Difference: success of {question.repair} minus success of {question.baseline}. Won:lost: "
-        f"scenes in which only {question.repair} or only {question.baseline} succeeds. Break-even: "
-        "the fault frequencies at which neither is shown to be ahead, with the estimate in front; "
-        "any: no bound could be shown. A dash: there is nothing to compute it from."
-        + (_BETA if result.break_even_beta else ""),
+        f"{facts.unit}s in which only {question.repair} or only {question.baseline} succeeds. "
+        "Break-even: the fault frequencies at which neither is shown to be ahead, with the "
+        "estimate in front; none: one is ahead at every frequency; any: no bound could be shown. "
+        "A dash: there is nothing to compute it from." + (_BETA if result.break_even_beta else ""),
         f"Primary contrast: {facts.primary}. {tests}{corrected} Intervals and tests speak of "
         f"{phrases.estimand(question, facts)}.",
         *not_standing(result),

@@ -96,7 +96,7 @@ def _side_by_side(columns: Sequence[Mapping[str, str]], absent: str) -> dict[str
 def _question(runs: Sequence[Compared]) -> dict[str, tuple[str, ...]]:
     facts = [
         {
-            "Fault": str(run.record.question.fault),
+            "Fault": str(run.record.question.fault or "not given"),
             "Baseline": run.record.question.baseline,
             "Repair": run.record.question.repair,
             "System": run.record.facts.system,

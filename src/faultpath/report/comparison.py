@@ -6,6 +6,7 @@ from rich.console import Group, RenderableType
 from rich.padding import Padding
 from rich.text import Text
 
+from faultpath.analyses.effects import Effect
 from faultpath.analyses.family import ALPHA
 from faultpath.analyses.model import where
 from faultpath.core.text import series, shortened
@@ -31,6 +32,7 @@ from faultpath.run.store.folder import OUTCOMES
 
 _LABEL = 28
 """Letters of a label on the terminal."""
+_NOTHING = "nothing significant"
 
 
 def headline(runs: Sequence[Compared]) -> str:
@@ -73,8 +75,8 @@ def sentences(runs: Sequence[Compared]) -> tuple[str, ...]:
             "The runs are of different systems: the same name need not mean the same thing."
         ]
     caveat = (
-        "The audits are separate tests and are not compared with each other: where a difference is "
-        "significant in one and not in another, the two are not shown to differ."
+        "The audits are not compared with each other: where a difference is significant in one and "
+        "not in another, the two are not shown to differ."
     )
     return *_over_sizes(runs), *conclusions, caveat
 
@@ -98,14 +100,24 @@ def _by_size(runs: Sequence[Compared], condition: str, sizes: Sequence[float]) -
     """Return who is ahead at which sizes: `gru ahead at 0.1; nothing significant at 0.05`."""
     by_answer: dict[str, list[str]] = {}
     for run, size in sorted(zip(runs, sizes, strict=True), key=lambda pair: pair[1]):
-        effect, words = run.effect(condition), "nothing significant"
-        if effect and effect.sign:
-            words = f"{run.record.winner(effect.sign)} ahead"
+        effect, words = run.effect(condition), _NOTHING
+        if effect is None:
+            words = run.absent(condition)
+        elif not effect.acted:
+            words = wording.reservation(effect)
+        elif effect.sign:
+            words = f"{run.record.winner(effect.sign)} ahead{_aside(effect)}"
         by_answer.setdefault(words, []).append(tick_label(size))
     if len(by_answer) == 1:
         (words,) = by_answer
-        return f"{words} at {'every' if words.endswith('ahead') else 'any'} size"
+        return f"{words} at {'any' if words == _NOTHING else 'every'} size"
     return "; ".join(f"{words} at {series(ticks)}" for words, ticks in by_answer.items())
+
+
+def _aside(effect: Effect) -> str:
+    """Return what keeps a significant effect out of a headline, to stand behind who is ahead."""
+    aside = wording.reservation(effect)
+    return f" ({aside})" if aside else ""
 
 
 def _opposite(runs: Sequence[Compared], condition: str) -> Iterator[str]:
@@ -121,9 +133,8 @@ def _opposite(runs: Sequence[Compared], condition: str) -> Iterator[str]:
                 continue
             role = "repair" if effect.sign > 0 else "baseline"
             winner = run.record.winner(effect.sign)
-            aside = wording.reservation(effect)
-            text = f"{run.number} (at the {aside})" if aside else f"{run.number}"
-            sides.setdefault(winner, {}).setdefault(f"{winner} ({role})", []).append(text)
+            numbers = sides.setdefault(winner, {}).setdefault(f"{winner} ({role})", [])
+            numbers.append(f"{run.number}{_aside(effect)}")
         if len(sides) > 1:
             clauses = [clause for by_role in sides.values() for clause in by_role.items()]
             yield ", ".join(f"for {side} in {series(numbers)}" for side, numbers in clauses)

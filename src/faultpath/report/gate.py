@@ -88,7 +88,7 @@ def junit(results: Sequence[AuditResult], gates: Sequence[str]) -> str:
         name += f" under {question.fault}" if question.fault else ""
         failed = sum(count.failed for count in result.counts)
         cases = {
-            "trials-ran": f"{failed} trials failed or are missing." if failed else "",
+            "trials-ran": f"{counted(failed, 'trial')} failed or missing." if failed else "",
             "result": text.headline if result.invalid else "",
         }
         for gate in gates:

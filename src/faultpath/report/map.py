@@ -192,7 +192,7 @@ def _key(svg: Svg, result: MapResult, hatch: str) -> None:
     svg.text(0, 13, title, "head", room=svg.width)
     for name, left, anchor in ((question.baseline, 0.0, "start"), (question.repair, end, "end")):
         svg.text(left, 32, f"{name} ahead", anchor=anchor, room=end / 2 - 6)
-    draw_scale(svg, cell, ("−30", "−10", "0", "+10", "+30"), hatch)
+    draw_scale(svg, cell, hatch)
     with svg.group("legend"):
         svg.path("M0 74h22v11h-22Z", "inner")
         beside = _entry(svg, 0, 84, "not significant")

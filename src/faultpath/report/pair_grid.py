@@ -37,7 +37,11 @@ def pair_grid(
     With several seeds a scene is a stack of cells, one a seed. `names` says what the system calls
     its ends. A cell whose scene and seed are among `shown` is a link to them in the viewer.
     """
-    summary = ", ".join(f"{_short(k)} {n}" for k, n in counts.items() if n or k in _ALWAYS)
+    parts = [f"{_short(k)} {n}" for k, n in counts.items() if n or k in _ALWAYS]
+    summary = ", ".join(parts)
+    texts = [summary]
+    if text_width(summary, 11) > _WIDTH:
+        texts = [", ".join(parts[:2]) + ",", ", ".join(parts[2:])]
     ordered = sorted(pairs, key=lambda p: (p.topology, p.index, p.scene, p.seed))
     blocks = [
         (name, [list(stack) for _, stack in groupby(block, key=lambda p: (p.index, p.scene))])
@@ -50,12 +54,12 @@ def pair_grid(
     side = min(_LARGEST, (_WIDTH - left) / columns - _GAP)
     row_height = n_seeds * (side + 1) + (7 if n_seeds > 1 else 4)
     rows = sum(-(-len(stacks) // columns) for _, stacks in blocks)
-    svg = Svg(
-        _WIDTH, 42 + rows * row_height + 4 * (len(blocks) - 1), f"{title}: pairs", summary, "group"
-    )
+    y = 27.0 + 15 * len(texts)
+    height = y + rows * row_height + 4 * (len(blocks) - 1)
+    svg = Svg(_WIDTH, height, f"{title}: pairs", summary, "group")
     svg.text(0, 14, title, "head", room=_WIDTH)
-    svg.text(0, 31, summary, "small soft")
-    y = 42.0
+    for place, text in enumerate(texts):
+        svg.text(0, 31 + 15 * place, text, "small soft")
     for name, stacks in blocks:
         svg.text(0, y + side / 2 + 4, name, "soft", room=left - 8)
         for k, stack in enumerate(stacks):

@@ -96,7 +96,7 @@ def _key(svg: Svg, hatch: str, width: float) -> None:
     """Draw the scale, and what else a cell may be."""
     svg.text(0, 13, "Success with both errors minus success", "head")
     svg.text(0, 29, "with the worse one alone, percentage points", "head")
-    draw_scale(svg, 40, ("−30", "−10", "0", "10", "30"))
+    draw_scale(svg, 40)
     svg.path("M1 74h22v12h-22Z", "", fill=hatch)
     svg.path("M1 74h22v12h-22Z", "inner")
     svg.text(29, 84, "not run", "small")

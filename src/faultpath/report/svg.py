@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from hashlib import blake2b
 from importlib import resources
+from unicodedata import east_asian_width
 
 from markupsafe import Markup
 
@@ -27,7 +28,9 @@ _SIZES = {"small": 11.0, "head": 13.0}
 
 def text_width(text: str, size: float) -> float:
     """Return a safe estimate of how wide `text` is at `size` pixels."""
-    return sum(_ADVANCE.get(c, 640) for c in text) * size / 1000.0
+    return sum(_ADVANCE.get(c, 1000 if east_asian_width(c) in "WF" else 640) for c in text) * (
+        size / 1000.0
+    )
 
 
 def shortened(text: str, width: float, size: float) -> str:
@@ -239,7 +242,7 @@ def shade(difference: float) -> str:
     return next(opacity for least, opacity in SHADES if abs(difference) >= least)
 
 
-def draw_scale(svg: Svg, width: float, labels: Sequence[str], hatch: str = "") -> None:
+def draw_scale(svg: Svg, width: float, hatch: str = "") -> None:
     """Draw a piece for each shade of the baseline, hatched, and of the repair, with labels between
     the pieces."""
     shades = [opacity for _, opacity in SHADES]
@@ -249,7 +252,7 @@ def draw_scale(svg: Svg, width: float, labels: Sequence[str], hatch: str = "") -
         svg.path(piece, side, fill_opacity=opacity)
         if hatch and column < len(shades):
             svg.path(piece, "", fill=hatch, fill_opacity="0.5")
-    for column, label in enumerate(labels, 1):
+    for column, label in enumerate(("−30", "−10", "0", "+10", "+30"), 1):
         svg.text(column * width, 63, label, "small soft", "middle")
 
 

@@ -5,7 +5,7 @@ from typing import Any
 
 from faultpath.report.sentences import wording
 from faultpath_paper.cells import SEEDS, Cell, Setting, calibration, published
-from faultpath_paper.entries import EntryGroup, bracket, of_quantity
+from faultpath_paper.entries import EntryGroup, of_quantity
 from faultpath_paper.page import Columns, Page, TableRow, table
 from faultpath_paper.pages.grid import Grid
 from faultpath_paper.quantities.differences import Effect, combined, succeeded, terminal_distance
@@ -57,7 +57,7 @@ def last_column(label: str, group: EntryGroup, *below: str) -> Columns:
 def _shown(
     quantity: Quantity, cells: Iterable[Cell], paper: Mapping[str, Any], digits: int
 ) -> EntryGroup:
-    texts = wording.signed(paper["mean"], digits), bracket(paper["ci95"], digits)
+    texts = wording.signed(paper["mean"], digits), wording.bracket(paper["ci95"], digits)
     return of_quantity(quantity, cells, texts, digits)
 
 

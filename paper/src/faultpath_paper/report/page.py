@@ -42,10 +42,8 @@ def sweep_plot(sweep: Sweep) -> Markup:
 
 
 def _point(point: Point) -> str:
-    ends = ""
-    if point.low is not None and point.high is not None:
-        ends = f" [{wording.plain(point.low)}, {wording.plain(point.high)}]"
-    return f"{tick_label(point.x)}: {wording.plain(point.y)}{ends}"
+    shown = f"{wording.plain(point.y)} {wording.interval(point)}".rstrip()
+    return f"{tick_label(point.x)}: {shown}"
 
 
 def _axes(points: Sequence[Point]) -> tuple[Axis, Axis]:

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Sequence
 
-from faultpath.core.text import counted
+from faultpath.core.text import capital, counted
 from faultpath.report.escapes import unbroken
 from faultpath.report.sentences import wording
 from faultpath_paper.answers import Answer, ClaimVerdict, Ledger, Size, StatementPart
@@ -76,9 +76,7 @@ def figure(of: ClaimVerdict | StatementPart) -> str:
 
 def interval(of: ClaimVerdict | StatementPart) -> str:
     """Return `[48.3, 66.3]`, or nothing without an interval."""
-    if of.interval is None:
-        return ""
-    return f"[{', '.join(wording.plain(end, _DIGITS.get(of.unit, 2)) for end in of.interval)}]"
+    return wording.bracket(of.interval, _DIGITS.get(of.unit, 2)) if of.interval else ""
 
 
 def estimate(of: ClaimVerdict | StatementPart) -> str:
@@ -95,8 +93,7 @@ def least_detectable(of: ClaimVerdict | StatementPart) -> str:
 
 def evidence(part: StatementPart) -> tuple[str, ...]:
     """Return the evidence for a part's answer, phrase by phrase."""
-    p_value = "" if part.p_value is None else wording.p_value(part.p_value)
-    p_value = p_value and f"p {p_value if p_value.startswith('<') else f'= {p_value}'}"
+    p_value = "" if part.p_value is None else wording.p_equals(part.p_value)
     detectable = least_detectable(part)
     phrases = (
         f"{p_value} ({part.test})" if p_value and part.test else p_value or part.test,
@@ -168,7 +165,7 @@ def headline(ledger: Ledger, profile: str) -> str:
     if profile == QUICK:
         return "The quick profile tests the pipeline and says nothing about the paper’s claims"
     clauses = [tally(ledger, kind) for kind in KINDS if any(c.kind == kind for c in ledger.claims)]
-    return "; ".join(clauses) or "This run is about none of the paper’s claims"
+    return capital("; ".join(clauses)) or "This run is about none of the paper’s claims"
 
 
 def tally(ledger: Ledger, kind: str) -> str:
@@ -178,12 +175,16 @@ def tally(ledger: Ledger, kind: str) -> str:
     about = " that this run is about" if ledger.left_out else ""
     if kind == "finding":
         return (
-            f"Of the paper’s {len(verdicts)} findings{about}, {confirmed} "
+            f"Of the paper’s {counted(len(verdicts), 'finding')}{about}, {confirmed} "
             f"{'was' if confirmed == 1 else 'were'} reproduced, {refuted} "
             f"{'was' if refuted == 1 else 'were'} refuted and {undecided} "
             f"{'is' if undecided == 1 else 'are'} inconclusive"
         )
-    return f"of {len(verdicts)} {KINDS[kind]}, {confirmed} hold on these scenes"
+    noun, hold = "property" if len(verdicts) == 1 else "properties", "hold" + "s" * (confirmed == 1)
+    return (
+        f"of {len(verdicts)} {noun} that the simulator was matched to, {confirmed} {hold} on these "
+        "scenes"
+    )
 
 
 def is_non_detection(claim: ClaimVerdict) -> bool:

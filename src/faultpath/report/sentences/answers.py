@@ -44,13 +44,13 @@ def answers(result: AuditResult) -> dict[str, str]:
 
 def _answers(result: AuditResult) -> dict[str, list[str]]:
     question, significant = result.question, any(effect.sign for effect in result.effects)
-    least = result.testing.scenes_needed
+    least, unit = result.testing.scenes_needed, result.facts.unit
     if result.invalid:
         return {"Left open": [_WHY_NO_RESULT[result.invalid]]}
     sure = [*_reach(result), *_hardly_acted(result)]
     if result.few:
         few = (
-            f"Too few scenes: {counted(result.scenes, 'scene')} compared, and no difference can be "
+            f"Too few {unit}s: {counted(result.scenes, unit)} compared, and no difference can be "
             f"significant with fewer than {least}. The numbers hold for them alone."
         )
         return {"Left open": [few], "How sure": sure}
@@ -95,8 +95,8 @@ def _follows(result: AuditResult) -> Iterator[str]:
     alone = any(effect.condition not in (CORRECT, SHARED) for effect in leading)
     for effect in tested if alone else ():
         if effect.condition == SHARED and not (effect.sign or effect.extreme or effect.unsettled):
-            less = f", and it is smaller than {margin(result)}" if result.is_small(effect) else ""
-            yield f"When the fault is shared, no difference is seen{less}."
+            less = f", and any is below {margin(result)}" if result.is_small(effect) else ""
+            yield f"When the fault is shared, no difference is significant{less}."
     if modules := [change.isolated for change in result.changes if change.turn == "interaction"]:
         yield (
             f"A fault at the {' or the '.join(modules)} alone does not stand for the shared one: "
@@ -125,7 +125,8 @@ def _unknown(result: AuditResult) -> str:
 def _reach(result: AuditResult) -> Iterator[str]:
     """Say how far the numbers reach, which seeds repeat, and how a sequential audit stopped."""
     question, facts = result.question, result.facts
-    holds = "The intervals hold" if result.few else "What is significant holds"
+    significant = any(effect.sign for effect in result.effects)
+    holds = "What is significant holds" if significant else "The intervals hold"
     conditional = facts.trained and question.generalise == "scenes"
     anew = "; models trained anew may differ" if conditional else ""
     yield f"{holds} for {phrases.estimand(question, facts)}{anew}."
@@ -133,8 +134,8 @@ def _reach(result: AuditResult) -> Iterator[str]:
         yield _PAIRED[facts.pairing]
         yield (
             "If both versions were equally good, at most 5 % of such comparisons would report any "
-            "difference, provided that the number of scenes was fixed before anybody looked: other "
-            "tools do not say whether it was."
+            f"difference, provided that the number of {facts.unit}s was fixed before anybody "
+            "looked: other tools do not say whether it was."
         )
     run = len(facts.seeds)
     yield from phrases.for_trainings(result)
@@ -153,9 +154,10 @@ def _hardly_acted(result: AuditResult) -> Iterator[str]:
     for count in result.counts:
         readers = faulted[count.condition][count.variant == result.question.repair]
         if count.condition in acted and readers and 2 * count.altered_trials < count.trials:
+            few = f"only {count.altered_trials}" if count.altered_trials else "none"
             yield (
-                f"{capital(where(count.condition))}, the fault changed something in only "
-                f"{count.altered_trials} of {count.trials} trials of {count.variant}."
+                f"{capital(where(count.condition))}, the fault changed something in {few} of "
+                f"{counted(count.trials, 'trial')} of {count.variant}."
             )
 
 
@@ -182,8 +184,14 @@ def _stopped(result: AuditResult) -> Iterator[str]:
         "Its scenes came in a random order fixed beforehand. Intervals and p-values hold wherever "
         "an audit stops, and are wider for that."
     )
-    if stopped.reached:
-        yield "A difference with which an audit stops is on average further from 0 than the truth."
+    every = question.stop_when == "all-decided"
+    if stopped.reached and any(
+        effect.sign for effect in result.effects if every or effect.condition == facts.primary
+    ):
+        yield (
+            "A significant difference with which an audit stops is on average further from 0 than "
+            "the truth."
+        )
 
 
 def _left_open(result: AuditResult) -> Iterator[str]:
@@ -194,7 +202,7 @@ def _left_open(result: AuditResult) -> Iterator[str]:
     yield from phrases.not_standing(result)
     yield from _unchanged(result)
     if result.facts.judged:
-        yield "Other scenes and other conditions are not among the results."
+        yield f"Other {result.facts.unit}s and other conditions are not among the results."
     else:
         yield (
             "Another size or sign of the fault, another library and another wiring were not tried."
@@ -237,18 +245,20 @@ def would_change(result: AuditResult) -> Iterator[str]:
         yield "Trials that repeat and are pairs: see the remarks on what differed."
         return
     stopped, tested = result.stopped, [effect for effect in result.effects if effect.acted]
-    judged = result.facts.judged
-    if stopped and not all(effect.sign for effect in result.effects):
+    judged, unit = result.facts.judged, result.facts.unit
+    if stopped and not stopped.reached:
+        yield (
+            "More scenes: a larger --scenes goes on with those of the same order, and what is said "
+            "then holds as well."
+        )
+    elif result.question.stop_when == "decided" and not all(e.sign for e in result.effects):
         yield (
             "More scenes: --stop-when all-decided goes on until every effect is significant or "
             "shown to be small."
-            if stopped.reached
-            else "More scenes: a larger --scenes goes on with those of the same order, and what is "
-            "said then holds as well."
         )
     if result.few:
         least = result.testing.scenes_needed
-        yield f"More scenes: {least} at least, and more for all but a clear winner."
+        yield f"More {unit}s: {least} at least, and more for all but a clear winner."
     if len(tested) < len(result.effects):
         yield "A fault that acts: an onset before the trial ends, a size that changes what is read."
     if any(effect.extreme == "floor" for effect in tested):
@@ -258,10 +268,10 @@ def would_change(result: AuditResult) -> Iterator[str]:
     if not result.few and any(e.least_pp and not e.sign for e in tested):
         instead = "" if judged else ", or --stop-when, which allows for several analyses"
         yield (
-            f"Fresh scenes, which no audit has used, and more of them{instead}: they find "
-            "smaller differences. Adding scenes to this audit would raise its error rate above 5 %."
+            f"Fresh {unit}s, which no audit has used, and more of them{instead}: they find smaller "
+            f"differences. Adding {unit}s to this audit would raise its error rate above 5 %."
         )
     if judged:
-        yield "Other scenes, other conditions: none of these is among the results."
+        yield f"Other {unit}s, other conditions: none of these is among the results."
     else:
         yield "Another size or sign of the fault, another library or wiring: none of these was run."

@@ -1,6 +1,6 @@
 """Findings of `check` and `trace` in words: what is wrong, where, and what to do."""
 
-from faultpath.core.text import capital, listed
+from faultpath.core.text import capital, counted, listed
 from faultpath.interface import module_of
 from faultpath.report.sentences import findings
 from faultpath.run.check.results import (
@@ -90,7 +90,8 @@ def summary(check: Checked) -> str:
             trials = sum(total for _, _, total in successes)
             counts = ", ".join(f"{name} {count} of {total}" for name, count, total in successes)
             text = f"{trials} under correct inputs; successes: {counts}"
-            return text + (f"; {under_fault} trials ended under the fault" if under_fault else "")
+            under = f"; {counted(under_fault, 'trial')} ended under the fault"
+            return text + (under if under_fault else "")
         case Repeated(processes):
             where = "in two processes and twice in one" if processes else "twice in one process"
             return f"run {where}, {'other' if check.failures else 'the same'} bits"
@@ -98,10 +99,12 @@ def summary(check: Checked) -> str:
             same = "the same initial states, disturbances and planner noise "
             return f"{'' if check.failures else same}in {runs} runs of a scene"
         case Reads(taps):
-            return f"{taps} injection points declared and read"
+            return f"{counted(taps, 'injection point')} declared and read"
         case Faulted(taps, altered, elsewhere):
-            text = f"{taps} injection points, each faulted alone: {altered} readings altered, "
-            return f"{text}{elsewhere or 'none'} elsewhere"
+            points, readings = counted(taps, "injection point"), counted(altered, "reading")
+            return (
+                f"{points}, each faulted alone: {readings} altered, {elsewhere or 'none'} elsewhere"
+            )
         case Spans(sources):
             return ", ".join(
                 f"{name} {low:.3g} to {high:.3g} {unit}".removesuffix(" 1")
@@ -183,7 +186,7 @@ def describe(problem: Problem) -> str:
         case TapFault():
             (channel, reader), trials = problem.tap, problem.trials
             point = f"Injection point {channel} -> {reader} of variant '{problem.variant}'"
-            return f"{point}, faulted in {trials} trials, {_tap_fault(problem)}"
+            return f"{point}, faulted in {counted(trials, 'trial')}, {_tap_fault(problem)}"
 
 
 def remedy(error: str) -> str:
@@ -280,10 +283,11 @@ def describe_read(finding: TraceFinding) -> str:
     """Return a read that is privileged or not as declared, as a sentence."""
     match finding:
         case NeverRead():
+            first = "step" if finding.steps == 1 else f"{finding.steps} steps"
             return (
                 f"Variant '{finding.variant}' declares that {finding.reader} reads "
-                f"'{finding.channel}', but in the first {finding.steps} steps it did not; trace "
-                "more --steps, or take it out of the variant's readers."
+                f"'{finding.channel}', but in the first {first} it did not; trace more --steps, or "
+                "take it out of the variant's readers."
             )
         case EndedEarly(error):
             return f"The run ended early: {error}."

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from faultpath.analyses.model import AuditResult, where
-from faultpath.core.text import capital, counted
+from faultpath.core.text import capital, counted, series
 from faultpath.report.sentences import phrases
 from faultpath.report.sentences.wording import signed
 from faultpath.run.findings import (
@@ -129,7 +129,15 @@ def _recheck(finding: Recheck) -> str:
 def _without_pairs(result: AuditResult) -> Iterator[str]:
     for condition in result.titles:
         if result.effect(condition) is None:
-            yield f"{phrases.no_pair(condition)}: the table shows what failed."
+            failed = series(
+                [
+                    f"{count.failed} of {counted(count.trials, 'trial')} of {count.variant}"
+                    for count in result.counts
+                    if count.condition == condition
+                ]
+            )
+            missing = " or are missing" if result.facts.judged else ""
+            yield f"{phrases.no_pair(condition)}: {failed} failed{missing}."
 
 
 def _failed_trials(result: AuditResult) -> Iterator[str]:
@@ -160,7 +168,7 @@ def _partly_measured(result: AuditResult) -> Iterator[str]:
         for name in result.facts.metrics:
             whole = secondary.metrics[name].n_scenes if name in secondary.metrics else 0
             if whole < effect.scenes and (whole or result.facts.judged):
-                scenes = f"{whole} of {counted(effect.scenes, 'scene')}"
+                scenes = f"{whole} of {counted(effect.scenes, result.facts.unit)}"
                 yield (
                     f"{capital(where(effect.condition))}, {name} is compared in {scenes}: only "
                     "there does every trial have it."

@@ -4,6 +4,7 @@ Names of modules and variants count as one word each.
 """
 
 from collections.abc import Sequence
+from typing import TypeAlias
 
 from faultpath.analyses.effects import Effect
 from faultpath.analyses.model import CORRECT, SHARED, AuditResult, where
@@ -22,14 +23,14 @@ def headline(result: AuditResult) -> str:
     many scenes they show where these are few."""
     if result.invalid:
         return NO_RESULT[result.invalid]
-    primary = result.facts.primary
+    primary, unit = result.facts.primary, result.facts.unit
     main = result.effect(primary)
     tested = [effect for effect in result.effects if effect.acted]
     if main is None:
         return f"{no_pair(primary)}."
     if result.few:
         return (
-            f"Too few scenes: {result.scenes} compared, and no difference can be significant with "
+            f"Too few {unit}s: {result.scenes} compared, and no difference can be significant with "
             f"fewer than {result.testing.scenes_needed}."
         )
     if not main.acted and all(effect.condition == CORRECT for effect in tested):
@@ -39,30 +40,31 @@ def headline(result: AuditResult) -> str:
     ends = {rate for effect in tested for rate in effect.rates}
     if ends <= {0.0, 100.0} and not any(any(map(any, effect.won)) for effect in tested):
         endings = [word for end, word in ((100.0, "succeed"), (0.0, "fail")) if end in ends]
-        which = "every scene that ran in both," if any(of.void for of in tested) else "every scene"
-        return f"No difference could show: in {which} both versions {' or '.join(endings)}."
-    reversals = reversed_at(result)
-    if reversals:
-        text = _reversal(result, main, reversals)
+        which = f"every {unit}{' that ran in both,' if any(of.void for of in tested) else ''}"
+        return f"No difference could show: in {which} both versions {' or both '.join(endings)}."
+    if reversals := reversed_at(result):
+        text, named = _reversal(result, main, reversals)
     else:
-        text = _ranking(result, main, [effect for effect in tested if effect is not main])
-    # How few scenes differ qualifies who is ahead, and nothing else that a headline says.
-    return f"{text[:-1]}{_few_scenes(result)}." if " is ahead" in text else text
+        text, named = _ranking(result, main, [effect for effect in tested if effect is not main])
+    return f"{text[:-1]}{_few_scenes(named, unit)}."
 
 
-def _few_scenes(result: AuditResult) -> str:
+Sentence: TypeAlias = tuple[str, Sequence[Effect]]
+"""A sentence, and the effects that it speaks of."""
+
+
+def _few_scenes(named: Sequence[Effect], unit: str) -> str:
     """Return in how few scenes the versions differ, of the effects that lead; else nothing."""
-    leading = [effect for effect in result.effects if effect.leads]
-    few = [effect for effect in leading if effect.few_differ]
+    few = [effect for effect in named if effect.leads and effect.few_differ]
     if not few:
         return ""
     least = sorted(min(few, key=lambda effect: sum(effect.ahead)).ahead)
     equal = [effect for effect in few if sorted(effect.ahead) == least]
-    at = f"{where(equal[0].condition)} " if len(leading) > 1 else ""
+    at = f"{where(equal[0].condition)} " if len(named) > 1 else ""
     if len(equal) > 1:
-        at = f"under {len(equal)} of these conditions " if len(equal) < len(leading) else ""
+        at = f"under {len(equal)} of these conditions " if len(equal) < len(named) else ""
     less, more = least
-    scenes = counted(more, "scene") + (" each" if len(equal) > 1 else "")
+    scenes = counted(more, unit) + (" each" if len(equal) > 1 else "")
     never = "never the other way" if not less else f"the other way in {less}"
     return f" ({at}in {scenes}, {never})"
 
@@ -77,26 +79,28 @@ def reversed_at(result: AuditResult) -> list[Effect]:
     ]
 
 
-def _reversal(result: AuditResult, main: Effect, reversals: Sequence[Effect]) -> str:
+def _reversal(result: AuditResult, main: Effect, reversals: Sequence[Effect]) -> Sentence:
     """Advise against the isolated fault, unless correct inputs rank the versions as it does: then
     a test with it shows no more than one without."""
     one, other = result.winner(reversals[0].sign), result.winner(-reversals[0].sign)
     modules = " or ".join(effect.condition for effect in reversals)
     alone = f"the {modules} alone" if len(reversals) < 3 else "one module alone"
-    correct = [
-        effect.sign for effect in result.effects if effect.condition == CORRECT and effect.leads
-    ]
-    if reversals[0].sign in correct:
-        at = f" and with it at {alone}" if main.condition == SHARED or main in reversals else ""
-        return f"{one} is ahead without the fault{at}, {other} with it shared."
+    shared = [effect for effect in result.effects if effect.condition == SHARED]
+    correct = [e for e in result.effects if e.condition == CORRECT and e.leads]
+    if correct and correct[0].sign == reversals[0].sign:
+        with_it = main.condition == SHARED or main in reversals
+        at = f" and with it at {alone}" if with_it else ""
+        text = f"{one} is ahead without the fault{at}, {other} with it shared."
+        return text, [*correct, *(reversals if with_it else ()), *shared]
     advice = f"Do not choose by the fault at {alone}:"
     if main.condition == CORRECT and main.leads and len(reversals) == 1:
         ahead = f"{result.winner(main.sign)} is ahead {where(CORRECT)}."
-        return f"{ahead} {advice} sharing reverses the ranking."
-    return f"{advice} {one} is ahead there, {other} with it shared."
+        text = f"{ahead} {advice} sharing reverses the ranking."
+        return text, [main, *reversals, *shared]
+    return f"{advice} {one} is ahead there, {other} with it shared.", [*reversals, *shared]
 
 
-def _ranking(result: AuditResult, main: Effect, others: Sequence[Effect]) -> str:
+def _ranking(result: AuditResult, main: Effect, others: Sequence[Effect]) -> Sentence:
     """Say who is ahead in the primary contrast, and one thing more.
 
     That is the shared fault where it shows something else, so that no gain in isolation stands
@@ -107,9 +111,8 @@ def _ranking(result: AuditResult, main: Effect, others: Sequence[Effect]) -> str
     alike.sort(key=lambda effect: effect.condition != SHARED)
     ahead = [effect for effect in others if effect.leads and effect not in alike]
     shared = [effect for effect in others if effect.condition == SHARED]
-    if len(alike) + 1 == len(result.effects) > 1:  # the same everywhere
-        place = "under every condition" if main.leads else "under any condition"
-        return _sentence(result, [main], place=place)
+    if len(alike) + 1 == len(result.titles) > 1:  # the same everywhere
+        return _sentence(result, [main, *alike], everywhere=True)
     if shared and shared[0] not in alike:
         return _sentence(result, [main], shared, both=main.leads)
     if not ahead:
@@ -131,21 +134,24 @@ def _sentence(
     second: Sequence[Effect] = (),
     *,
     both: bool = True,
-    place: str = "",
-) -> str:
+    everywhere: bool = False,
+) -> Sentence:
     """Return a sentence with a clause for each of two groups of like effects.
 
-    `both` names both versions in the first one; `place` stands instead of where it holds.
+    `both` names both versions in the first one; `everywhere`: it holds under every condition.
     """
     question, state = result.question, _state(result, first[0])
+    where_it_holds = places(first)
+    if everywhere:
+        where_it_holds = f"under {'any' if state == _OPEN else 'every'} condition"
     if both and first[0].leads:
         state += f" of {result.winner(-first[0].sign)}"
     elif both and state == _OPEN:
         state = f"no difference between {question.baseline} and {question.repair} is significant"
-    text = f"{state} {place or places(first)}"
+    text = f"{state} {where_it_holds}"
     if second:
         text += f"; {_state(result, second[0])} {places(second)}"
-    return f"{text if first[0].leads else capital(text)}."
+    return f"{text if first[0].leads else capital(text)}.", [*first, *second]
 
 
 _OPEN = "no difference is significant"

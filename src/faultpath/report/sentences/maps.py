@@ -12,9 +12,9 @@ from faultpath.stats.power import MIN_SCENES
 
 def size_label(facts: MapFacts, size: float) -> str:
     """Return the size of an error: `+20 %`, or `+0.2 m`."""
-    if facts.relative:
-        return f"{100 * size:+.3g} %".replace("-", MINUS) if size else "0 %"
-    return f"{size:+.3g} {facts.unit}".replace("-", MINUS).removesuffix(" 1")
+    shown, unit = (100 * size, "%") if facts.relative else (size, facts.unit)
+    number = f"{shown:+.3g}".replace("-", MINUS) if size else "0"
+    return f"{number} {unit}".removesuffix(" 1").rstrip()
 
 
 def headline(result: MapResult) -> str:
@@ -35,10 +35,11 @@ def headline(result: MapResult) -> str:
     ahead = {sign: sum(point.sign == sign for point in result.points) for sign in (1, -1)}
     if not any(ahead.values()):
         return f"At none of {run} pairs of errors is the difference significant."
-    clauses = [f"{result.winner(sign)} at {count}" for sign, count in ahead.items() if count]
-    first, *others = clauses
-    text = f"{first.replace(' at ', ' is ahead at ', 1)} of {run} pairs of errors"
-    return f"{', '.join([text, *others])}; elsewhere neither is significantly ahead."
+    (sign, most), *others = [(sign, count) for sign, count in ahead.items() if count]
+    text = f"{result.winner(sign)} is ahead at {most} of {run} pairs of errors"
+    text += "".join(f", {result.winner(sign)} at {count}" for sign, count in others)
+    elsewhere = "; elsewhere neither is significantly ahead" if sum(ahead.values()) < run else ""
+    return f"{text}{elsewhere}."
 
 
 def sentences(result: MapResult) -> tuple[str, ...]:
@@ -49,9 +50,9 @@ def sentences(result: MapResult) -> tuple[str, ...]:
     if result.scenes < MIN_SCENES:
         return (_distribution(result),)
     ahead = {sign: sum(point.sign == sign for point in result.points) for sign in (-1, 1)}
+    holds = "What is significant holds" if any(ahead.values()) else "The intervals hold"
     return (
-        f"What is significant holds for {scenes_like_these(result.facts)}, at the pairs of errors "
-        "that were run.",
+        f"{holds} for {scenes_like_these(result.facts)}, at the pairs of errors that were run.",
         f"Of {run} pairs of errors run, {result.winner(-1)} is significantly ahead at {ahead[-1]} "
         f"and {result.winner(1)} at {ahead[1]}; at {run - ahead[-1] - ahead[1]} neither.",
         *(
@@ -60,7 +61,7 @@ def sentences(result: MapResult) -> tuple[str, ...]:
             f"{result.winner(-sign)}."
             for module, sign, sizes in _turned(result)
         ),
-        *(_flipped(result, flip) for flip in result.flips),
+        *(_flipped(result, flip) for flip in result.flips if any(ahead.values())),
         _distribution(result),
         _expected(result),
     )

@@ -13,7 +13,6 @@ DIFFERS: dict[Kind, str] = {
     "state": "state differs",
 }
 """Differences by their kind, in two words."""
-_NOUN: dict[Kind, str] = {"reading": "reading", "command": "command", "state": "quantity"}
 _LEAST, _MOST = 3, 17
 """Digits of the two values: so few that they still look different."""
 
@@ -88,7 +87,7 @@ def _beginning(kind: Kind, at: Difference, one: Ended, other: Ended) -> str:
     of_unit = "" if at.unit in ("", "1") else f" {unit(at.unit)}"
     text = f"{what} is {_both(at.values, of_unit, one, other)}"
     if at.others:
-        text += f" (and {counted(at.others, 'more ' + _NOUN[kind])} differ{'s' * (at.others == 1)})"
+        text += f" (and {counted(at.others, f'more {kind}')} differ{'s' * (at.others == 1)})"
     if at.most is not None:
         time_s, values = at.most
         text += f"; they differ most at {_time(time_s)} s: {_both(values, of_unit, one, other)}"

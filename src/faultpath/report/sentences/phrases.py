@@ -12,7 +12,7 @@ from faultpath.analyses.model import (
     Invalid,
     where,
 )
-from faultpath.core.text import capital, series
+from faultpath.core.text import capital, counted, series
 from faultpath.report.sentences.wording import interval, p_equals, p_value, signed, with_interval
 from faultpath.stats.distributions import sign_p_value
 
@@ -120,7 +120,7 @@ def in_short(result: AuditResult, effect: Effect | None) -> str:
         return "too few scenes"
     p = f" ({adjusted(result, effect)})" if only_alone(effect) else ""
     if result.is_small(effect):
-        return f"differ by less than {margin(result)}{p}"
+        return f"the two differ by less than {margin(result)}{p}"
     return f"no significant difference{p}"
 
 
@@ -140,7 +140,7 @@ def change(result: AuditResult, change: Change) -> str:
     alone, shared = where(change.isolated), where(SHARED)
     if change.turn == "reversal":
         one, other = (result.winner(end.sign) for end in ends)
-        aside = " One of the two lies at the floor or ceiling: this carries no headline."
+        aside = " An effect at the floor or ceiling carries no headline."
         return (
             f"Sharing the fault reverses the ranking: {alone}, {one} succeeds more often; "
             f"{shared}, {other} does ({numbers})."
@@ -164,12 +164,11 @@ def no_pair(condition: str) -> str:
 
 def not_standing(result: AuditResult) -> Iterator[str]:
     """Say of each interval that excludes 0 without a significant difference why it is not one."""
-    contrasts = f"{result.testing.hypotheses} contrasts"
+    contrasts = counted(result.testing.hypotheses, "contrast")
     for effect in () if result.invalid else filter(only_alone, result.effects):
         yield (
             f"{capital(where(effect.condition))}, the interval excludes 0, but "
-            f"{adjusted(result, effect)} ({contrasts}): the difference is not "
-            "significant."
+            f"{adjusted(result, effect)} ({contrasts}): the difference is not significant."
         )
 
 
@@ -179,11 +178,13 @@ def earlier_analyses(result: AuditResult) -> str:
     counts = sorted({analysis.scenes for analysis in earlier if analysis.scenes is not None})
     with_scenes = f" with {series([str(n) for n in counts])} scenes" if counts else ""
     primaries = series(list(dict.fromkeys(f"'{analysis.primary}'" for analysis in earlier)))
+    instead = (
+        "" if result.facts.order else ", or with --stop-when, which allows for several analyses"
+    )
     return (
         f"This audit was concluded before{with_scenes}, led by {primaries}: after an earlier "
         "analysis, more than 5 % of audits would report a difference between equally good "
-        "versions. Run it in scenes that no audit has used, or with --stop-when, which allows for "
-        "several analyses."
+        f"versions. Run it in scenes that no audit has used{instead}."
     )
 
 
@@ -198,13 +199,21 @@ def for_trainings(result: AuditResult) -> Iterator[str]:
         "mean, as a Gaussian does: a rare collapse that none of them had is not seen."
     )
     for effect in result.effects:
+        if not effect.acted:
+            continue
         values = effect.per_seed
         repair, baseline = sum(value > 0 for value in values), sum(value < 0 for value in values)
         even = len(values) - repair - baseline
+        ahead = f"{result.winner(repair - baseline)} is ahead in {max(repair, baseline)}"
+        if repair == baseline:
+            ahead = (
+                f"each version is ahead in {repair}"
+                if repair
+                else "neither version is ahead in any"
+            )
         yield (
-            f"{capital(where(effect.condition))}, {result.winner(1 if repair >= baseline else -1)} "
-            f"is ahead in {max(repair, baseline)} of {len(values)} trainings"
-            f"{f', neither in {even}' if even else ''}, "
+            f"{capital(where(effect.condition))}, {ahead} of {len(values)} trainings"
+            f"{f', neither in {even}' if even and even < len(values) else ''}, "
             f"{p_equals(sign_p_value(repair, baseline))} (sign test, whatever their distribution)."
         )
 
@@ -228,15 +237,15 @@ def in_trials_that_ran(result: AuditResult) -> Iterator[str]:
             if result.facts.judged:
                 how = "add their outcomes to the results"
             text += (
-                f"; otherwise at least {needed} that failed have to run, and come out as the "
-                f"others did ({how})"
+                f"; otherwise failed trials have to run and come out as the others did, at least "
+                f"{needed} ({how})"
             )
         yield f"{text}."
 
 
 def scenes_run(result: AuditResult) -> str:
-    """Return the number of scenes, and of how many where an audit could have taken more."""
-    most = str(result.facts.n_scenes)
+    """Return `100 scenes`, and of how many where an audit could have taken more."""
+    most = counted(result.facts.n_scenes, result.facts.unit)
     if result.stopped is None or result.stopped.scenes == result.facts.n_scenes:
         return most
     return f"{result.stopped.scenes} of at most {most}"

@@ -170,7 +170,7 @@ def _counts(result: ScanResult) -> str:
         )
     pairs, alone = len(result.versions[0].pairs), len(result.versions[0].singles)
     same = alone - chosen
-    others = f", {same} at other readers of the same sources" if same else ""
+    others = f", with {same} more at other readers of the same sources" if same else ""
     return (
         f"Of {counted(total, 'error')}, each run alone in {counted(first, 'scene')}, {chosen} "
         f"seemed to cost success and went on{others}; {counted(pairs, 'pair')} ran in {second} "
@@ -196,10 +196,10 @@ def _left_out(result: ScanResult) -> Iterator[str]:
                 "error, so that none can cost much: choose easier scenes."
             )
     if result.failed:
+        scenes = "its scene does" if result.failed == 1 else "their scenes do"
         yield (
-            f"{counted(result.failed, 'trial')} failed and left their scenes out of what they are "
-            "part of: what is listed holds if failing has nothing to do with how they would have "
-            "ended."
+            f"{counted(result.failed, 'trial')} failed, and {scenes} not count there: what is "
+            "listed holds if failing has nothing to do with how a trial would have ended."
         )
     apart = " Versions are tested separately." if len(result.versions) > 1 else ""
     yield (

@@ -3,10 +3,10 @@
 import math
 import re
 from collections.abc import Mapping, Sequence
+from typing import Protocol
 
 from faultpath.analyses.effects import Difference, Effect
 from faultpath.analyses.facts import ComparisonFacts
-from faultpath.analyses.map.model import Expectation, MapPoint
 from faultpath.analyses.shares import first, last
 from faultpath.core.text import capital
 from faultpath.stats.estimate import BreakEven, Estimate
@@ -29,15 +29,27 @@ def signed(value: float, digits: int = 1) -> str:
 
 def plain(value: float, digits: int = 1) -> str:
     """Return the number with a real minus sign."""
-    text = f"{value:.{digits}f}"
-    return (text.removeprefix("-") if float(text) == 0.0 else text).replace("-", MINUS)
+    return signed(value, digits).removeprefix("+")
 
 
-def interval(estimate: Estimate | Difference | MapPoint | Expectation, digits: int = 1) -> str:
-    """Return `[−16.0, −4.0]`, or nothing where no interval exists."""
+def bracket(ends: Sequence[float], digits: int = 1) -> str:
+    """Return `[−16.0, −4.0]`."""
+    low, high = ends
+    return f"[{plain(low, digits)}, {plain(high, digits)}]"
+
+
+class _Ends(Protocol):
+    @property
+    def low(self) -> float | None: ...
+    @property
+    def high(self) -> float | None: ...
+
+
+def interval(estimate: _Ends, digits: int = 1) -> str:
+    """Return both ends, or nothing where no interval exists."""
     if estimate.low is None or estimate.high is None:
         return ""
-    return f"[{plain(estimate.low, digits)}, {plain(estimate.high, digits)}]"
+    return bracket((estimate.low, estimate.high), digits)
 
 
 def with_interval(estimate: Estimate | Difference | None, digits: int = 1) -> str:
@@ -140,8 +152,10 @@ def sentence(words: str) -> str:
 
 
 def seeds_run(facts: ComparisonFacts) -> str:
-    """Return `, seeds 0, 1`; nothing for results of other tools that name no seed but 0."""
-    return "" if facts.judged and facts.seeds == (0,) else f", {seeds(facts.seeds)}"
+    """Return `, seeds 0, 1`; nothing for results of other tools that name no seed but 0, nor where
+    seeds only number the trials of a task."""
+    unnamed = facts.unit == "task" or (facts.judged and facts.seeds == (0,))
+    return "" if unnamed else f", {seeds(facts.seeds)}"
 
 
 def seeds(values: tuple[int, ...]) -> str:
