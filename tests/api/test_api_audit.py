@@ -136,6 +136,8 @@ def test_trials_of_an_object_are_never_taken_for_those_of_another(toy):
         (TOY, {"sceens": 3}, "did you mean 'scenes'"),
         (TOY, {"seeds": (0, -1)}, "-1 is not a seed"),
         (TOY, {"workers": -1}, "the number of workers is -1"),
+        (TOY, {"folder": ""}, "folder: an empty path names nothing"),
+        (TOY, {"folder": "a\0b"}, "folder: a path cannot have a null character"),
         (None, {"options": {"wind": "L3"}}, "options build a system, and this one is built"),
         (TOY, {"margin_pp": 5.0}, "give it with --stop-when"),
         (TOY, SEQUENTIAL | {"margin_pp": 0.0}, "between 0 and 100"),

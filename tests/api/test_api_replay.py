@@ -161,3 +161,13 @@ def test_a_replay_says_what_has_changed_since_the_run(folder, update, words) -> 
     changed = replay(replace(source, provenance=run), (SCENE,), ("observer",), trust=True).changed
     assert len(changed) == len(words)
     assert all(map(str.startswith, changed, words))
+
+
+def test_signals_that_cannot_be_written_are_refused_before_trials_run(
+    folder, tmp_path, monkeypatch
+) -> None:
+    run = Path(shutil.copytree(folder, tmp_path / "run"))
+    (run / SIGNALS).mkdir()
+    monkeypatch.setattr("faultpath.api.replaying.replay", lambda *_: 1 / 0)
+    with pytest.raises(UserError, match=r"signals\.parquet \(it is a folder"):
+        command(run, signals=True, trust=True)

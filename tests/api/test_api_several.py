@@ -50,6 +50,37 @@ def test_what_cannot_be_compared(
         faultpath.compare(folders)
 
 
+def test_runs_to_compare_come_as_they_may(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(REFERENCE)
+    assert len(faultpath.compare(Path(name) for name in ("toy", "dock")).runs) == 2
+    run, other = map(faultpath.open_run, ("toy", "map-toy"))
+    with pytest.raises(UserError, match="two or more"):
+        faultpath.compare(run)  # pyright: ignore[reportArgumentType] - a mistake
+    with pytest.raises(UserError, match="map-toy holds no audit"):
+        faultpath.compare([run, other])
+
+
+@pytest.mark.parametrize("name", ["toy", "map-toy", "scan-toy"])
+def test_pages_go_into_no_folder_of_another_run(name: str, tmp_path: Path) -> None:
+    run = faultpath.open_run(REFERENCE / name)
+    other = shutil.copytree(REFERENCE / "dock", tmp_path / "dock")
+    before = (other / "report.html").read_bytes()
+    with pytest.raises(UserError, match="dock holds another run"):
+        run.report(other)
+    with pytest.raises(UserError, match="an empty path names nothing"):
+        run.report("")
+    assert (other / "report.html").read_bytes() == before
+
+
+@pytest.mark.usefixtures("elsewhere")
+@pytest.mark.parametrize("folder", ["", 3])
+def test_sizes_go_into_no_folder_that_is_none(folder: object, tmp_path: Path) -> None:
+    sizes = QUESTION | {"fault": "gain:scale=0.6,0.8", "folder": folder}
+    with pytest.raises(UserError, match=r"^folder: "):
+        faultpath.api.audits(TOY, **sizes)
+    assert not list(tmp_path.iterdir())
+
+
 def test_compare_on_the_command_line(toy: Path, tmp_path: Path) -> None:
     copies = [shutil.copytree(toy, tmp_path / name) for name in "abc"]
     folders = [toy, *copies]

@@ -1,13 +1,14 @@
 """Trials that other tools ran are read strictly, paired by keys, and decided as an audit's are."""
 
 import json
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 from judged_files import HEADER, Successes, inspect_log, lerobot, lm_eval, table
-from toy_audits import AUDIT, TOY
+from toy_audits import AUDIT, ROOT, TOY
 
 import faultpath
 from faultpath import Run, UserError
@@ -94,6 +95,26 @@ def test_what_other_tools_write_is_read(
     text = " ".join(run.sentences)
     assert ("by their keys alone" in text) == (pairing == "keys")
     assert "correct inputs" not in text + run.headline
+
+
+@pytest.mark.usefixtures("without_pages")
+def test_a_folder_judged_anew_is_that_of_the_last_results(tmp_path: Path) -> None:
+    for scenes in (10, 20):
+        some = {variant: won[:scenes] for variant, won in WON.items()}
+        run = judged(table(tmp_path / "all.csv", {"nominal": some}), tmp_path / "run")
+        again = faultpath.open_run(run.folder)
+        assert (again.record, again.provenance) == (run.record, run.provenance)
+        assert again.record.facts.n_scenes == scenes
+
+
+@pytest.mark.parametrize("name", ["toy", "map-toy", "scan-toy"])
+def test_no_run_of_trials_is_judged_over(name: str, tmp_path: Path) -> None:
+    """As it is handed on: without what an unfinished one goes on from."""
+    folder = Path(shutil.copytree(ROOT / "docs" / "reference" / name, tmp_path / "run"))
+    before = {path: path.read_bytes() for path in folder.iterdir()}
+    with pytest.raises(UserError, match="run holds a run that is no judgement"):
+        judged(table(tmp_path / "all.csv", {"nominal": WON}), folder)
+    assert {path: path.read_bytes() for path in folder.iterdir()} == before
 
 
 def test_missing_pairs_are_named_and_bound_what_is_decided(tmp_path: Path) -> None:

@@ -85,7 +85,7 @@ def test_judged_trials_end_a_build_likewise(folder: Path) -> None:
     (place,) = Path("runs").iterdir()  # the same question, asked twice
     faultpath("replay", place).refused("other tools ran these trials")
     assert faultpath("report", place, folder / "run").status == 0
-    judged(folder, "--out", folder / "run").refused("holds an audit's trials")
+    judged(folder, "--out", folder / "run").refused("is no judgement")
 
 
 @pytest.mark.parametrize("name", ["build.md", "new", "step-1"])

@@ -122,6 +122,18 @@ def test_ctrl_c_outside_the_run_is_a_sentence_too(monkeypatch, tmp_path):
     assert faultpath("report", tmp_path / "run").status == 0
 
 
+def test_ctrl_c_pressed_once_more_is_one_sentence_too(monkeypatch):
+    def press(*_: object) -> str:
+        os.kill(os.getpid(), signal.SIGINT)
+        return ""
+
+    monkeypatch.setattr("faultpath.api.runs.write_report", press)
+    monkeypatch.setattr("faultpath.core.error_source.location", press)
+    ended = audit(out="run", scenes=1)
+    assert ended.status == INTERRUPTED
+    assert ended.err.splitlines()[-1].startswith("faultpath: interrupted")
+
+
 STOPPED_WHILE_LOADING = """
 import os, signal, sys
 class Stop:

@@ -128,9 +128,18 @@ def test_no_file_of_a_run_or_of_somebody_else_is_replaced(
     page = run / "report.html"
     before = page.read_bytes()
     faultpath(*OUTPUTS[option], mine).refused("mine is there already")
-    faultpath(*OUTPUTS[option], page).refused("report.html belongs to the run")
+    for name in ("report.html", "new.md"):
+        faultpath(*OUTPUTS[option], run / name).refused(f"{name} lies in the folder of a run")
+    assert not (run / "new.md").exists()
     assert mine.read_text() == "<html><!-- about faultpath -->"
     assert page.read_bytes() == before
+
+
+def test_a_file_is_written_for_one_option(tmp_path: Path) -> None:
+    results()
+    both = ["--junit", "page.md", "--summary", tmp_path / "page.md"]
+    faultpath(*COMMANDS["judge"], *both).refused("--junit and --summary both name page.md")
+    assert os.listdir(tmp_path) == ["all.csv"]
 
 
 @pytest.mark.parametrize("command", COMMANDS)

@@ -1,8 +1,8 @@
 """The front door: what `import faultpath` offers, and what the command line calls.
 
 Calls that fewer scripts make have their public names here. A call runs, decides, writes a run
-folder and returns what came out. It leaves threads, environment and random state of its caller as
-they were.
+folder and returns what came out. It leaves threads, environment, working directory and random state
+of its caller as they were.
 """
 
 from typing import TYPE_CHECKING

@@ -38,7 +38,7 @@ from faultpath.report.sentences.findings import describe
 from faultpath.run.execution.runner import RunResult
 from faultpath.run.findings import Finding, Unrecorded, Unrepeated
 from faultpath.run.provenance import seal
-from faultpath.run.question import AuditCall, MapCall, ScanCall
+from faultpath.run.question import AuditCall, MapCall, ScanCall, ask
 from faultpath.run.shown import system_shown
 from faultpath.run.store.folder import OUTCOMES
 from faultpath.run.store.signals import (
@@ -108,15 +108,16 @@ def audits(
         fault = FaultText.read(fault)
     if not isinstance(fault, FaultText) or len(fault.sizes) < 2:
         return (audit(system, progress=progress, **{**arguments, "fault": fault}),)
-    folder = arguments.pop("folder", None)
-    if folder is not None and is_run(Path(folder)):
+    sizes = fault.each()
+    by_flag = isinstance(progress, Display) and progress.is_command
+    folder = ask(AuditCall, {**arguments, "fault": sizes[0]}, by_flag).folder
+    if folder is not None and is_run(folder):
         raise UserError(f"{folder} holds a run: give another folder for the audits of each size.")
     runs: list[Run] = []
-    for number, sized in enumerate(fault.each(), 1):
-        place = None if folder is None else Path(folder) / f"size-{number}"
-        runs.append(
-            audit(system, progress=progress, **{**arguments, "fault": sized, "folder": place})
-        )
+    for number, size in enumerate(sizes, 1):
+        place = None if folder is None else folder / f"size-{number}"
+        sized = {**arguments, "fault": size, "folder": place}
+        runs.append(audit(system, progress=progress, **sized))
     return tuple(runs)
 
 

@@ -16,7 +16,7 @@ from faultpath.analyses.judging import PairedResults, pair_results
 from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.api.audit import with_stored
 from faultpath.api.display import Display, display
-from faultpath.api.folders import MADE_FROM, RECORD, SYSTEM, as_text
+from faultpath.api.folders import MADE_FROM, RECORD, SYSTEM, as_text, read_provenance
 from faultpath.api.job import with_question_signature
 from faultpath.api.runs import Run
 from faultpath.core.errors import UserError
@@ -27,7 +27,7 @@ from faultpath.report.inputs import ReportInput
 from faultpath.report.sentences.findings import describe
 from faultpath.run.deliveries import Deliveries, RowDeliveries
 from faultpath.run.execution.runner import RunResult
-from faultpath.run.provenance import amend, run_provenance
+from faultpath.run.provenance import PROVENANCE, amend, run_provenance
 from faultpath.run.question import ask
 from faultpath.run.received.question import JudgeQuestion
 from faultpath.run.received.results import read_results
@@ -70,14 +70,14 @@ def judge(
     if notice := _modules_notice(paired, shown):
         shown.say(notice)
     folder = question.folder or _folder(paired, sources)
-    if (folder / "manifest.json").exists():
-        raise UserError(f"{folder} holds an audit's trials: give another folder with --out.")
+    _check_kind(folder)
     record = decide(
         paired.question, paired.facts, paired.conditions, paired.trials, paired.findings
     )
     begin(folder)
     record = with_stored(folder, record)
     with locked(folder, shown.say):
+        (folder / PROVENANCE).unlink(missing_ok=True)  # of a judgement before, of other trials
         system = _system(paired.question)
         result = _stored(folder, paired, system)
         write_text(folder / RECORD, as_text(record), folder)
@@ -91,6 +91,15 @@ def judge(
         for finding in paired.findings:
             shown.say(describe(finding))
     return run
+
+
+def _check_kind(folder: Path) -> None:
+    """Raise `UserError` for the folder of a run that ran trials itself, or of a damaged one."""
+    ran = (folder / "manifest.json").exists()
+    if not ran and (folder / PROVENANCE).exists():
+        ran = bool(read_provenance(folder).code.sources)
+    if ran:
+        raise UserError(f"{folder} holds a run that is no judgement: give another folder.")
 
 
 def _are_paths(results: object) -> bool:

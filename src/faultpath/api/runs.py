@@ -1,10 +1,10 @@
 """Finished runs as a program and a notebook use them, read as data: nothing they name is run."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from importlib.metadata import entry_points
-from os import PathLike
+from os import PathLike, fspath
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -22,7 +22,8 @@ from faultpath.api.folders import (
     read_run,
 )
 from faultpath.core.errors import UserError
-from faultpath.core.files.atomic import check_output, write_text
+from faultpath.core.files.atomic import check_output, is_run, write_text
+from faultpath.core.files.opening import named_path
 from faultpath.core.files.parquet import read_table
 from faultpath.report import comparison
 from faultpath.report.audit_tables import markdown_table
@@ -79,6 +80,18 @@ class AnalysedRun(FinishedRun):
         """All that it says, a sentence or two each."""
         return self.words.sentences
 
+    def _place(self, folder: str | PathLike[str] | None) -> Path:
+        """Return where pages go, by default the run's folder; `UserError` for another run's."""
+        if folder is None:
+            return self.folder
+        try:
+            place = named_path(fspath(folder))
+        except ValueError as error:
+            raise UserError(f"{error}.") from None
+        if is_run(place) and place.resolve() != self.folder.resolve():
+            raise UserError(f"{place} holds another run: give another folder.")
+        return place
+
 
 class Run(AnalysedRun):
     """A finished audit: its result, from which trials, and where its files are.
@@ -127,9 +140,10 @@ class Run(AnalysedRun):
     def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
         """Write report.html and table.md, and return their paths.
 
-        They go into `folder`, by default that of the run. `UserError` where it cannot be written.
+        They go into `folder`, by default that of the run. `UserError` where it cannot be written,
+        or holds another run.
         """
-        return write_report(self.inputs, self.folder if folder is None else Path(folder))
+        return write_report(self.inputs, self._place(folder))
 
     def _repr_markdown_(self) -> str:
         return markdown_table(self.record)
@@ -144,8 +158,7 @@ class MapRun(AnalysedRun):
 
     def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
         """Write report.html, map.svg, correlation.svg and table.md, and return their paths."""
-        place = self.folder if folder is None else Path(folder)
-        return write_map(self.record, self.provenance, place)
+        return write_map(self.record, self.provenance, self._place(folder))
 
 
 class ScanRun(AnalysedRun):
@@ -157,8 +170,7 @@ class ScanRun(AnalysedRun):
 
     def report(self, folder: str | PathLike[str] | None = None) -> list[Path]:
         """Write report.html, scan.svg and table.md, and return their paths."""
-        place = self.folder if folder is None else Path(folder)
-        return write_scan(self.record, self.provenance, place)
+        return write_scan(self.record, self.provenance, self._place(folder))
 
 
 def open_run(folder: str | PathLike[str]) -> "Run | MapRun | ScanRun | Any":
@@ -237,7 +249,7 @@ def in_json(folder: str | Path, record: AuditResult | MapResult | ScanResult) ->
     }
 
 
-def compare(runs: Sequence[str | PathLike[str] | Run]) -> RunComparison:
+def compare(runs: Iterable[str | PathLike[str] | Run]) -> RunComparison:
     """Set finished audits side by side: effects by condition, what differs, who disagrees.
 
     Audits are separate tests and are not compared with each other. Sizes of one fault are one
@@ -250,12 +262,13 @@ def compare(runs: Sequence[str | PathLike[str] | Run]) -> RunComparison:
         UserError: There are fewer than two, one is given twice, or a folder holds no finished
             audit, or one that was changed since.
     """
-    if isinstance(runs, str | PathLike) or len(runs) < 2:
+    sources = [runs] if isinstance(runs, str | PathLike | FinishedRun) else list(runs)
+    if len(sources) < 2:
         raise UserError("comparing takes two or more runs: give the folders of finished audits.")
     compared: list[Compared] = []
     places: set[Path] = set()
-    for number, source in enumerate(runs, 1):
-        run = source if isinstance(source, Run) else open_run(source)
+    for number, source in enumerate(sources, 1):
+        run = source if isinstance(source, FinishedRun) else open_run(source)
         if not isinstance(run, Run):
             raise UserError(f"{run.folder} holds no audit: only finished audits can be compared.")
         if run.folder.resolve() in places:

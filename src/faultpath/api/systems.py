@@ -115,9 +115,8 @@ def executor_of(system: System, workers: int | None, executor: str = LOCAL) -> E
     """Return what runs trials: processes of this machine, or the workers of a Ray cluster.
 
     Where `workers` is left out, one for each core or CPU if the system gains by several. Raises
-    `UserError` for an executor that there is not or that cannot be used.
+    `UserError` for an executor that cannot be used.
     """
-    check_executor(executor)
     count = 1 if workers is None and not system.parallel else workers
     if executor == LOCAL:
         return local((os.cpu_count() or 1) if count is None else count)

@@ -63,6 +63,8 @@ class Gate:
         for condition in conditions:
             if condition not in _ASKS:
                 raise UserError(f"--fail-if {condition}: {unknown('name', condition, _ASKS)}.")
+        if junit and summary and os.path.realpath(junit) == os.path.realpath(summary):
+            raise UserError(f"--junit and --summary both name {junit}: give two files.")
         if junit is not None:
             check_output(junit, b'<testsuites name="faultpath"')
         if summary is not None:

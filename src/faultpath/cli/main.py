@@ -9,6 +9,7 @@ import re
 import signal
 import sys
 import warnings
+from io import TextIOWrapper
 from traceback import format_exception
 from types import FrameType
 from typing import Any, NoReturn
@@ -39,6 +40,7 @@ def main() -> NoReturn:
     end = argv.index("--") if "--" in argv else len(argv)
     traced = _TRACEBACK in argv[:end]
     arguments = [part for part in argv[:end] if part != _TRACEBACK] + argv[end:]
+    _prepare_output()
     ctrl_c = _CtrlC()
     if traced and sys.stderr is sys.__stderr__:
         faulthandler.enable()
@@ -46,29 +48,66 @@ def main() -> NoReturn:
     try:
         status = _run(arguments)
     except BaseException as error:
-        from faultpath.core.error_source import location
-
-        theirs = bool(location(error))  # a system may raise what would mean something of ours
-        # Whoever reads our output has seen enough; rich ends the program at that.
-        if BrokenPipeError in (type(error), type(error.__context__)) and not theirs:
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            sys.exit(EXIT_BROKEN_PIPE)
-        interrupted = isinstance(error, KeyboardInterrupt) and not theirs
-        if ctrl_c.pressed or interrupted or isinstance(error, Stopped):
-            sentence = str(error) if isinstance(error, Stopped) else _AGAIN
-            status = 128 + ctrl_c.pressed if ctrl_c.pressed else INTERRUPTED
-        else:
-            sentence, status = _sentence(error), USER_ERROR
-            if sentence is None:
-                raise
-            if traced:
-                sys.stderr.write("".join(format_exception(error)))
-        if sentence:
-            sys.stderr.write(f"faultpath: {one_line(sentence)}\n")
+        ctrl_c.ignore()
+        try:
+            status = _explain(error, ctrl_c.pressed, traced)
+        except BrokenPipeError:
+            status = EXIT_BROKEN_PIPE
+        if status is None:
+            raise
+        if status == EXIT_BROKEN_PIPE:
+            _flush()
     finally:
         ctrl_c.leave()
         warnings.showwarning = shown
     sys.exit(status)
+
+
+def _prepare_output() -> None:
+    """Let every text be written, to whatever the caller opened for it."""
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:  # it is closed
+            setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_WRONLY), "w"))
+        elif isinstance(stream, TextIOWrapper):  # to a terminal that has not all letters, too
+            stream.reconfigure(errors="backslashreplace")
+    if os.environ.get("COLUMNS") == "0":  # rich draws nothing on a terminal of no columns
+        del os.environ["COLUMNS"]
+
+
+def _flush() -> None:
+    """Let what is left of the output go nowhere where nobody reads it."""
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except BrokenPipeError:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+
+
+def _explain(error: BaseException, pressed: int, traced: bool) -> int | None:
+    """Say why a command ended, and return its exit status; `None` for an error of faultpath's own.
+
+    Raises `BrokenPipeError` where nobody reads that.
+    """
+    from faultpath.core.error_source import location
+
+    theirs = bool(location(error))  # a system may raise what would mean something of ours
+    # Whoever reads our output has seen enough; rich ends the program at that.
+    if BrokenPipeError in (type(error), type(error.__context__)) and not theirs:
+        return EXIT_BROKEN_PIPE
+    interrupted = isinstance(error, KeyboardInterrupt) and not theirs
+    if pressed or interrupted or isinstance(error, Stopped):
+        sentence = str(error) if isinstance(error, Stopped) else _AGAIN
+        status = 128 + pressed if pressed else INTERRUPTED
+    else:
+        sentence, status = _sentence(error), USER_ERROR
+        if sentence is None:
+            return None
+        if traced:
+            sys.stderr.write("".join(format_exception(error)))
+    if sentence:
+        sys.stderr.write(f"faultpath: {one_line(sentence)}\n")
+    return status
 
 
 def _show(message: Warning | str, *more: Any, **named: Any) -> None:
@@ -93,6 +132,11 @@ class _CtrlC:
     def _press(self, number: int, frame: FrameType | None) -> None:
         self.pressed = number
         raise KeyboardInterrupt
+
+    def ignore(self) -> None:
+        """Let what was pressed once more not spoil the sentence about the first time."""
+        for number in self._before:
+            signal.signal(number, signal.SIG_IGN)
 
     def leave(self) -> None:
         for number, handler in self._before.items():

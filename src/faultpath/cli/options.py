@@ -11,6 +11,7 @@ import typer
 from typer.core import TyperCommand, TyperOption
 
 from faultpath.core.errors import UserError
+from faultpath.core.files.opening import named_path
 from faultpath.core.text import has_control_characters, number_in, one_line, whole_in
 
 if TYPE_CHECKING:
@@ -75,20 +76,11 @@ def refuse_with(other: str, **arguments: object) -> None:
 
 
 def path(text: str | Path) -> Path:
-    """Read the path of a file or folder.
-
-    Given as `parser=` to every option and argument that is one: an empty path would mean the
-    working directory, which nobody has asked to be written into.
-    """
-    if not str(text):
-        raise typer.BadParameter("an empty path names nothing, give one that is not empty")
-    if "\0" in str(text):
-        raise typer.BadParameter("a path cannot have a null character in it")
+    """Read the path of a file or folder: `parser=` of every option and argument that is one."""
     try:
-        Path(text).resolve()
-    except RuntimeError:  # what `resolve` raises for a link that leads back to itself
-        raise typer.BadParameter(f"the link {str(text)!r} leads back to itself") from None
-    return Path(text)
+        return named_path(text)
+    except ValueError as error:
+        raise typer.BadParameter(str(error)) from None
 
 
 def literal(text: str) -> str:

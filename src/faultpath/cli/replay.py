@@ -49,14 +49,18 @@ def replay(
     from faultpath.api.display import SafeConsole
     from faultpath.api.folders import RECORD, read_provenance, read_run
     from faultpath.api.replaying import chosen_scenes, keep_signals, replay, where_parted
+    from faultpath.core.files.atomic import check_writable
     from faultpath.core.text import counted
     from faultpath.report.sentences.parting import compared, parted
     from faultpath.report.terminal import STYLES
+    from faultpath.run.store.signals import SIGNALS
 
     if as_json and not where:
         raise UserError("--json prints what --where finds: give --where too.")
     if RECORD not in read_provenance(folder).files:
         raise UserError(f"{folder} holds no finished audit, and only its trials can be replayed.")
+    if signals:
+        check_writable(folder / SIGNALS)
     source = read_run(folder)
     scenes = chosen_scenes(source, scene or (), condition or ())
     console = SafeConsole(stderr=as_json)

@@ -10,6 +10,7 @@ import numpy as np
 from faultpath.core.error_source import described, located
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.loop import DeliveryListener, TapCount, Taps
+from faultpath.run.apart import set_apart
 from faultpath.run.plan import Treatment
 from faultpath.run.work.executor import Failed, Lost
 from faultpath.system.outcome import Outcome, checked
@@ -76,9 +77,9 @@ def attempt(
     """
     try:
         taps = taps_of(system, treatment, scenes, guard, observer)
-        outcomes = _checked(
-            system, scenes, system.run(treatment.variant, scenes, taps, treatment.seed)
-        )
+        with set_apart(system):
+            returned = system.run(treatment.variant, scenes, taps, treatment.seed)
+            outcomes = _checked(system, scenes, returned)
         dt_s = system.control_dt_s
         steps = [outcome.steps(dt_s) for outcome in outcomes]
         taps.verify(np.array(steps, dtype=np.int64) - 1)

@@ -6,7 +6,7 @@ import inspect
 import os
 import sys
 from collections.abc import Generator, Iterable, Sequence
-from contextlib import contextmanager, redirect_stdout
+from contextlib import contextmanager
 from functools import cache
 from hashlib import sha256
 from importlib.machinery import (
@@ -25,6 +25,7 @@ from faultpath.core.error_source import location as where
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.text import extra
 from faultpath.core.trees import Root, imported, kind_of, package_paths
+from faultpath.run.apart import FOLDER, set_apart, working_directory
 from faultpath.run.opened import reads
 from faultpath.run.plan import SystemSpec
 from faultpath.system.checks import check_system
@@ -33,6 +34,8 @@ from faultpath.system.system import System
 
 _opened: dict[tuple[str, int], set[str]] = {}
 """By file and its time: what lies beside it is imported once, and what is opened then counts."""
+_entered: dict[str, str] = {}
+"""By system, the working directory that it entered; a module is imported once too."""
 _EXTRAS = frozenset({"torch", "gymnasium"})
 
 
@@ -52,7 +55,8 @@ def load_system(spec: SystemSpec) -> System:
     module of the system's own of which this process would run another one of that name.
 
     The caller's process stays as it was, but for the modules that the system imports and its folder
-    at the end of `sys.path`. Where loading fails both are put back.
+    at the end of `sys.path`. Where loading fails both are put back. A working directory that the
+    system enters is that of its trials alone.
     """
     with _loading(spec.name):
         target = ":".join(_target(spec.name))
@@ -67,7 +71,8 @@ def load_system(spec: SystemSpec) -> System:
         if not isinstance(system, System):
             raise UserError(f"{target} returned a {type(system).__name__}: it must return a System")
         check_system(system, spec.name)
-        return system
+    vars(system)[FOLDER] = _entered.get(spec.name)
+    return system
 
 
 def opened_by(name: str) -> frozenset[str]:
@@ -261,9 +266,10 @@ def _loading(name: str) -> Generator[None]:
     """
     path, modules = tuple(sys.path), dict(sys.modules)
     try:
-        # What a system prints is no output of a command.
-        with redirect_stdout(sys.stderr), reads() as opened:
+        with set_apart() as before, reads() as opened:
             yield
+            if (entered := working_directory()) != before:
+                _entered[name] = entered
         _opened.setdefault(_version(name), set()).update(opened)
     except BaseException as error:
         sys.path[:] = path

@@ -7,6 +7,7 @@ from typing import Annotated, cast
 
 from pydantic import BeforeValidator, Field, PlainSerializer
 
+from faultpath.core.files.opening import named_path
 from faultpath.core.text import number_in
 
 LARGEST = 2**63 - 1
@@ -75,7 +76,7 @@ def read_names(value: object) -> object:
     return names
 
 
-_path = BeforeValidator(lambda place: Path(place) if isinstance(place, str) else place)
+_path = BeforeValidator(lambda place: named_path(place) if isinstance(place, str | Path) else place)
 _DRAWN = "Seeds of the noise, and of trained models where there are any: 0,1,2 or 0..2."
 
 Names = Annotated[

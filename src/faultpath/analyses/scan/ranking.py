@@ -24,6 +24,7 @@ from faultpath.core.error_source import described
 from faultpath.core.errors import Notice
 from faultpath.faults import Fault, at_readers
 from faultpath.loop import Batch, Inputs, Loop, Plant, Progress, Reading, Taps
+from faultpath.run.apart import set_apart
 from faultpath.run.attempt import taps_of
 from faultpath.run.plan import Treatment
 from faultpath.stats.inputs import Floats
@@ -103,10 +104,11 @@ def command_responses(
 
     Empty where nothing that faultpath sees reaches the plant. Raises what the run raises.
     """
-    loop = system.loop(variant, seed)
-    first = _First(system, variant, faults, tuple(scenes), seed, loop)
-    taps = _Taps(first, (), records=True)
-    system.execute(_with_plant(loop, first), scenes, taps, seed)
+    with set_apart(system):
+        loop = system.loop(variant, seed)
+        first = _First(system, variant, faults, tuple(scenes), seed, loop)
+        taps = _Taps(first, (), records=True)
+        system.execute(_with_plant(loop, first), scenes, taps, seed)
     if not first.commands or first.commands[0].shape[1] == 0:
         return {}
     commands, running = np.stack(first.commands), np.stack(first.running)

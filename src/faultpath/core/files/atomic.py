@@ -69,7 +69,9 @@ def is_run(folder: Path) -> bool:
         with suppress(OSError):
             if b'"faultpath_version"' in contents(folder / name, LARGEST_TEXT):
                 return True
-    return (lock := folder / ".lock").is_file() and contents(lock).strip().isdigit()
+    with suppress(OSError):
+        return contents(folder / ".lock").strip().isdigit()
+    return False
 
 
 def begin(folder: Path) -> None:
@@ -101,12 +103,12 @@ def check_folder(path: Path) -> None:
 
 
 def check_output(path: Path, mark: bytes | None = None) -> None:
-    """Raise `UserError` where a file that the user names cannot be written, belongs to a run, or
-    exists without the `mark` of the file that is to replace it."""
+    """Raise `UserError` where a file that the user names cannot be written, lies in the folder of a
+    run, or exists without the `mark` of the file that is to replace it."""
     check_writable(path)
+    if is_run(Path(os.path.realpath(path)).parent):
+        raise UserError(f"{path} lies in the folder of a run: give a file outside.")
     if path.exists():
-        if is_run(Path(os.path.realpath(path)).parent):
-            raise UserError(f"{path} belongs to the run in that folder: give another file.")
         check_mark(path, mark)
 
 

@@ -32,6 +32,22 @@ _NO_FILE = (
 )
 
 
+def named_path(text: str | Path) -> Path:
+    """Return the path of a file or folder that a user names; `ValueError` for what can be none.
+
+    An empty path would mean the working directory, which nobody has asked to be written into.
+    """
+    if not str(text):
+        raise ValueError("an empty path names nothing, give one that is not empty")
+    if "\0" in str(text):
+        raise ValueError("a path cannot have a null character in it")
+    try:
+        Path(text).resolve()
+    except RuntimeError:  # what `resolve` raises for a link that leads back to itself
+        raise ValueError(f"the link {str(text)!r} leads back to itself") from None
+    return Path(text)
+
+
 def unlike_file(mode: int) -> str:
     """Return what a file mode stands for, such as `a pipe`; empty for a file."""
     return next((kind for is_kind, kind in _NO_FILE if is_kind(mode)), "")
