@@ -8,7 +8,7 @@ from typing import Any, cast
 import numpy as np
 from typing_extensions import override
 
-from faultpath.core.arrays import is_array, namespace
+from faultpath.core.arrays import copy, is_array, namespace
 from faultpath.core.error_source import described, location, location_of, mistake_in
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import unknown
@@ -221,7 +221,8 @@ class FunctionModule(Module):
                 f"module '{self.name}' has a memory and returned no pair: return (value, memory)",
             )
         value, memory = cast("tuple[Any, Any]", pair)
-        return {self.writes[0]: value}, memory
+        # A memory that the function goes on writing into may be the value itself.
+        return {self.writes[0]: copy(value) if is_array(value) else value}, memory
 
 
 def _required_arguments(make: Callable[..., Any]) -> dict[str, Parameter]:
