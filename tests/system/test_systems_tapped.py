@@ -201,6 +201,37 @@ def test_delivery_logs_count_what_was_read_and_a_fault_after_a_write_is_not_deli
     assert "flux -> observer.flux" in str(late.error)
 
 
+@pytest.mark.parametrize("fault", ["flux:delay=2", "flux:hold=3", "flux:freeze,onset=1"])
+def test_a_scene_that_reads_seldom_gets_the_same_whoever_reads_beside_it(fault):
+    def make():
+        return SimpleNamespace(par=tapped(Parameters(), "flux", at="control"), step=-1, seen=0.0)
+
+    @writes("voltage", of=make)
+    def seldom(parts, every):
+        parts.step += 1
+        if parts.step % every == 0:
+            parts.seen = parts.par.flux
+        return parts.seen
+
+    plant = functions(
+        lambda rng: {"current": 0.0, "flux": 0.0, "every": int(rng.integers(2, 5))},
+        lambda state, voltage, rng: (
+            state | {"current": state["current"] - voltage, "flux": state["flux"] + 1.0}
+        ),
+        observes={"current": "current", "flux": "flux", "every": "every"},
+        action="voltage",
+        steps=10,
+    )
+    units = {"current": "A", "flux": "Vs", "voltage": "V", "every": "1"}
+    built = ComposedSystem("drive", plant, {"only": [seldom]}, units)
+    treatment = Treatment(variant="only", faults=parse_fault(fault, built.interface, {}, 0.1))
+    scenes = tuple(f"seed/{i}" for i in range(4))
+    together = attempt(built, treatment, scenes)
+    alone = [attempt(built, treatment, (scene,)).outcomes[0] for scene in scenes]
+    assert list(together.outcomes) == alone
+    assert len({outcome.altered_steps for outcome in alone}) > 1
+
+
 def test_what_parts_share_is_found_and_what_a_run_writes_is_named():
     par = Parameters()
     observer, control = Observer(par, 0.1), Controller(par)

@@ -24,6 +24,7 @@ from faultpath.loop.parts import (
     label_of,
 )
 from faultpath.loop.reading import Reading
+from faultpath.loop.taps import UNREAD
 
 _SLACK = 1e-6
 """Share of a step by which rates and latencies may miss a whole step, through rounding."""
@@ -68,7 +69,9 @@ class SampledSource:
 class Deliverer(Protocol):
     """Methods of taps that a loop calls, for classes that wrap taps."""
 
-    def deliver(self, channel: str, reader: str, reading: Reading, step: int) -> Any:
+    def deliver(
+        self, channel: str, reader: str, reading: Reading, step: int, scene: int | None = None
+    ) -> Any:
         """Return the value that a reader gets; see `Taps.deliver`."""
         ...
 
@@ -161,7 +164,7 @@ class _Execution:
 
     def _inputs(self, part: Part, step: int, truths: Mapping[str, Any], running: Array) -> Inputs:
         delivered: dict[tuple[str, str], Any] = {}
-        at_read: dict[Port, Callable[[], Any]] = {}
+        at_read: dict[Port, Callable[..., Any]] = {}
         for port, reader, source, past, at_read_only in self._ports[id(part)]:
             reading = self._previous.get(source) if past else self._current[source]
             if reading is None:
@@ -169,10 +172,12 @@ class _Execution:
                     f"{label_of(part)} reads what channel '{port.channel}' held one step before, "
                     f"but {self._no_past(source)}"
                 )
+            deliver = partial(self._taps.deliver, port.channel, reader, reading, step)
             if at_read_only:
-                at_read[port] = partial(self._taps.deliver, port.channel, reader, reading, step)
+                deliver(UNREAD)
+                at_read[port] = deliver
             else:
-                delivered[port] = self._taps.deliver(port.channel, reader, reading, step)
+                delivered[port] = deliver()
         declared = part.truths if isinstance(part, Module) else ()
         shown = {name: truths[name] for name in declared}
         return Inputs(part.name, step, delivered, shown, running, at_read, label_of(part))

@@ -294,8 +294,10 @@ class _ShapeRecorder:
     def set_active(self, mask: Any) -> None:
         del mask
 
-    def deliver(self, channel: str, reader: str, reading: Reading, step: int) -> Any:
-        del channel, reader, step
+    def deliver(
+        self, channel: str, reader: str, reading: Reading, step: int, scene: int | None = None
+    ) -> Any:
+        del channel, reader, step, scene
         if hasattr(reading.value, "shape"):
             self.shapes.setdefault(reading.source, tuple(np.shape(reading.value)[1:]))
         return reading.value

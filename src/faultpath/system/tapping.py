@@ -45,7 +45,7 @@ class Reads:
                 f"object that keeps the copy, or let the function that makes it take {name} as an "
                 "argument"
             )
-        return self.inputs[self.ports[name]][self.row]
+        return self.inputs.row(self.ports[name], self.row)
 
 
 class _Keys(dict[Any, Any]):
