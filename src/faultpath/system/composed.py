@@ -59,8 +59,8 @@ class ComposedSystem(LoopSystem):
 
     Readers follow from the modules' ports, shapes from the first step of each variant. Sources that
     the plant senses are measured, values that a scene's set-up returns are estimated (their
-    channels have a fidelity gap), the plant's input is commanded, modules' outputs are
-    reconstructed.
+    channels have a fidelity gap), the plant's input and outputs of modules that read nothing are
+    commanded, other outputs of modules are reconstructed.
 
     Args:
         name: Name of the system.
@@ -190,6 +190,8 @@ class ComposedSystem(LoopSystem):
         written = [name for module in modules for name in module.writes]
         known = dict.fromkeys(plant.senses, "measured") | dict.fromkeys(plant.facts, "estimated")
         known |= dict.fromkeys(alternatives.get(plant.action, (plant.action,)), "commanded")
+        computed = {name for module in modules if module.ports for name in module.writes}
+        known |= dict.fromkeys(set(written) - computed, "commanded")
         for module in modules:
             for port in sorted(module.ports):
                 there = list(dict.fromkeys((*plant.senses, *plant.facts, *written)))
