@@ -98,6 +98,7 @@ def test_a_mapping_is_delivered_however_it_is_read():
     def read(par):
         seen.update(item=par["mass"], get=par.get("mass"), missing=par.get("span", 7))
         seen.update(copied=dict(par), spread={**par}, values=list(par.values()))
+        seen.update(default=par.setdefault("mass", 9.0), popped=par.copy().pop("mass"))
         return par["mass"]
 
     module = writes("out", of=make)(read)
@@ -105,7 +106,28 @@ def test_a_mapping_is_delivered_however_it_is_read():
     module.step(Inputs("module", 0, readings, {}), module.begin(Batch(("a",), 0, 0.1)))
     both = {"mass": 4.0, "treatment": 0.2}
     assert (seen.pop("copied"), seen.pop("spread")) == (both, both)
+    assert (seen.pop("default"), seen.pop("popped")) == (4.0, 4.0)
     assert seen == {"item": 4.0, "get": 4.0, "missing": 7, "values": [4.0, 0.2]}
+
+
+def _pops(par):
+    assert par.pop("mass") == 4.0
+    return par.get("mass", 7.0)
+
+
+@pytest.mark.parametrize(
+    ("write", "value"),
+    [
+        (lambda par: par.update(mass=5.0) or par["mass"], 5.0),
+        (lambda par: par.__ior__({"mass": 6.0})["mass"], 6.0),
+        (_pops, 7.0),
+    ],
+)
+def test_what_a_reader_writes_into_a_mapping_is_its_own_however_it_writes(write, value):
+    module = writes("out", of=lambda: tapped({"mass": 1.0}, "mass", at="control"))(write)
+    readings = {Port("mass", "control.mass"): np.array([4.0])}
+    outputs, _ = module.step(Inputs("module", 0, readings, {}), module.begin(Batch(("a",), 0, 0.1)))
+    assert outputs["out"].tolist() == [value]
 
 
 def test_mistakes_are_told_in_a_sentence():
