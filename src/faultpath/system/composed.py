@@ -1,5 +1,6 @@
 """A system composed of an episode plant and modules; its interface follows from these."""
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -183,6 +184,11 @@ class ComposedSystem(LoopSystem):
             port.channel for part in (*modules, plant) for port in sorted(part.ports)
         )
         feeds = {channel: alternatives.get(channel, (channel,)) for channel in read}
+        if idle := alternatives.keys() - read:
+            raise SystemMistake(
+                f"system '{self.name}': no module reads what channels names: "
+                f"{unknown('channel', min(idle), read)}"
+            )
         # Until a first step shows a module's output, it has the shape of the source it replaces.
         for fed in feeds.values():
             if shaped := [name for name in fed if name in shapes]:
@@ -194,6 +200,14 @@ class ComposedSystem(LoopSystem):
         known |= dict.fromkeys(set(written) - computed, "commanded")
         for module in modules:
             for port in sorted(module.ports):
+                for name in (port.channel, *module.reader(port).split(".")):
+                    if not re.fullmatch(r"[a-z][a-z0-9_]*", name):
+                        raise self._mistake(
+                            module,
+                            f"'{name}' cannot name a module, a place or a channel: use small "
+                            "letters, digits and '_', a letter first; `name=` of @writes names a "
+                            "module",
+                        )
                 there = list(dict.fromkeys((*plant.senses, *plant.facts, *written)))
                 if not {*feeds[port.channel]} & {*there}:
                     raise self._unread(module, port.channel, there)

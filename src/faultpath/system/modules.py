@@ -54,7 +54,7 @@ def writes(
     """
     past = (past,) if isinstance(past, str) else tuple(past)
     return lambda function: FunctionModule(
-        function, source, past, before, {}, of, name or function.__name__
+        function, source, past, before, {}, of, name or getattr(function, "__name__", "")
     )
 
 
