@@ -41,7 +41,10 @@ def select(
             else:
                 part = batch()
             for key in keys:
-                part = _part(name, part, key, observed) if isinstance(key, str) else part[:, key]
+                if isinstance(key, str):
+                    part = _part(name, part, key, observed)
+                else:
+                    part = part[key] if isinstance(part, tuple) else part[:, key]
             sources[name] = np.array(part)
     except (LookupError, TypeError) as error:
         shape = getattr(batch(), "shape", None)
