@@ -169,7 +169,7 @@ class EpisodePlant(Plant):
     def start(self, batch: Batch) -> _Batch:
         worlds, n = [self.world(name, batch.seed) for name in batch.scenes], len(batch.scenes)
         for name, world in zip(batch.scenes, worlds, strict=True):
-            if world.facts.keys() != set(self.facts):
+            if set(world.facts) != set(self.facts):
                 raise SystemMistake(
                     f"the set-up of scene '{name}' returned {listed(world.facts)}, and that of "
                     f"'{SCENE}0' {listed(self.facts)}: return the same names for each scene"

@@ -43,8 +43,10 @@ def select(
             for key in keys:
                 if isinstance(key, str):
                     part = _part(name, part, key, observed)
+                elif isinstance(part, tuple):
+                    part = cast("tuple[Any, ...]", part)[key]
                 else:
-                    part = part[key] if isinstance(part, tuple) else part[:, key]
+                    part = part[:, key]
             sources[name] = np.array(part)
     except (LookupError, TypeError) as error:
         shape = getattr(batch(), "shape", None)
