@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from gym_toys import SCENES, Steer, functions, trials
+from libraries import LIBRARIES
 
 from faultpath.core.errors import SystemMistake
 from faultpath.interface import transitive_readers
@@ -132,6 +133,12 @@ def test_the_hash_of_a_state_that_holds_an_object_does_not_depend_on_places() ->
     one, two = instance("Craft", "faultpath_system_a1"), instance("Craft", "faultpath_system_b2")
     assert hashed({"craft": one, "x": 1.0}) == hashed({"craft": two, "x": 1.0})
     assert hashed({"craft": one}) != hashed({"craft": instance("Boat", "faultpath_system_a1")})
+
+
+@LIBRARIES
+def test_the_hash_of_a_state_is_of_all_its_bits(to) -> None:
+    one, two = to(np.array([1.0, 2.0])), to(np.array([1.0, 2.0 + 1e-12]))
+    assert hashed({"at": one}) == hashed({"at": to(np.array([1.0, 2.0]))}) != hashed({"at": two})
 
 
 def test_a_key_that_the_state_has_not_is_told_with_those_that_it_has():

@@ -117,5 +117,9 @@ def test_rows_are_computed_one_at_a_time():
 
     product, first = row_wise(both)(np.arange(6.0).reshape(3, 2), 2.0)
     assert sizes == [1, 1, 1]
+    assert row_wise(both)(rows=np.ones((2, 2)), factor=3.0)[1].tolist() == [1, 1]
+    for wrong in ((np.ones((3, 2)), np.ones((2, 2))), (1.0, 2.0)):
+        with pytest.raises(SystemMistake, match=r"got arrays of different rows \((2, 3|none)\)"):
+            row_wise(both)(*wrong)
     assert product.tolist() == [[0, 2], [4, 6], [8, 10]]
     assert first.tolist() == [0, 2, 4]

@@ -243,14 +243,25 @@ def row_wise(function: Callable[..., Any]) -> Callable[..., Any]:
 
     A matrix product rounds differently for another number of rows; row by row each scene gets the
     same bits whatever the other scenes. Arrays, also the returned ones, are `[B, ...]`; all other
-    arguments are passed on unchanged.
+    arguments are passed on unchanged. Raises `SystemMistake` for arrays of different B, or none.
     """
 
-    def each(*values: Any) -> Any:
-        rows = max(len(value) for value in values if is_array(value) and value.ndim)
+    def each(*values: Any, **named: Any) -> Any:
+        counts = {len(v) for v in (*values, *named.values()) if is_array(v) and v.ndim}
+        if len(counts) != 1:
+            counts_shown = ", ".join(map(str, sorted(counts))) or "none"
+            raise mistake_in(
+                function,
+                f"a function that is row_wise got arrays of different rows ({counts_shown}): give "
+                "it arrays with one row a scene, and what is the same for all scenes beforehand",
+            )
+
+        def row(value: Any, i: int) -> Any:
+            return value[i : i + 1] if is_array(value) and value.ndim else value
+
         single = [
-            function(*(v[i : i + 1] if is_array(v) and v.ndim else v for v in values))
-            for i in range(rows)
+            function(*(row(v, i) for v in values), **{n: row(v, i) for n, v in named.items()})
+            for i in range(counts.pop())
         ]
         if isinstance(single[0], tuple):
             return tuple(namespace(parts[0]).concat(parts) for parts in zip(*single, strict=True))
