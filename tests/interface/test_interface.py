@@ -63,20 +63,6 @@ def test_refuses_what_does_not_fit(fields: dict[str, object], sentence: str) -> 
     assert sentence in error["msg"]
 
 
-def test_refuses_reconstructions_in_a_circle() -> None:
-    one = WIND.model_copy(update={"name": "one"})
-    two = WIND.model_copy(update={"name": "two"})
-    with pytest.raises(ValidationError, match=re.escape("a -> b -> a is a cycle; a module that")):
-        build(
-            sources=(one, two),
-            channels=(
-                channel("first", sources=("one",), readers=("b.input",)),
-                channel("second", sources=("two",), readers=("a.input",)),
-            ),
-            reconstructs={"a": "one", "b": "two"},
-        )
-
-
 def test_uncertainty_is_one_of_two() -> None:
     for both in ({}, {"std": 1.0, "half_range": 1.0}):
         with pytest.raises(ValidationError, match="give either std or half_range"):
@@ -212,6 +198,24 @@ def test_a_fault_reaches_through_reconstructions_of_reconstructions() -> None:
     filtering = Interface.model_validate(INTERFACE.model_dump() | {"reconstructs": both})
     assert filtering.reconstructions == (("observer", "seen"), ("observer", "risk"))
     assert transitive_readers(filtering, "mass") == reached
+
+
+def test_modules_may_read_each_other_since_one_of_them_may_read_the_past() -> None:
+    circle = {"observer": ["seen"], "guard": ["risk", "still"]}
+    still = {"provenance": Provenance.RECONSTRUCTED}
+    sources = [s.model_copy(update=still) if s.name == "still" else s for s in INTERFACE.sources]
+    channels = [
+        *INTERFACE.channels[:3],
+        Channel(name="alarm", sources=("risk",), readers=("pilot.g", "observer.h")),
+    ]
+    changed = {"reconstructs": circle, "sources": sources, "channels": channels}
+    interface = Interface.model_validate(dict(INTERFACE) | changed)
+    assert transitive_readers(interface, "alarm") == (
+        "pilot.g",
+        "observer.h",
+        "predictor.e",
+        "guard.f",
+    )
 
 
 def test_rank_is_by_reach_then_expected_uncertainty() -> None:

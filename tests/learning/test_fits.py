@@ -112,6 +112,14 @@ def test_a_reconstruction_learns_the_correct_reading_from_what_its_module_reads(
     assert evaluate(fitted, data) < 0.1 * np.var(slope)
 
 
+def test_readings_that_cannot_be_written_to_are_fitted_without_a_warning() -> None:
+    data = windows()
+    for values in (*data.readings.values(), data.targets):
+        values.flags.writeable = False
+    one, other = (fit(Net, given, schedule=SHORT).record for given in (data, windows()))
+    assert one.weights_sha256 == other.weights_sha256
+
+
 def test_an_episode_is_on_one_side_of_the_split() -> None:
     names = [f"episode/{i // 4}" for i in range(60)]
     training, held_out = windows(episodes=names).split(0.3)
@@ -159,6 +167,13 @@ def test_damaged_files_are_refused(tmp_path, damage, said) -> None:
         (lambda: fit(lambda: 3, windows()), "no torch module"),
         (lambda: fit(torch.nn.Identity, windows()), "no parameters"),
         (lambda: fit(Net, windows(), validation=1.0), "no window is left"),
+        (lambda: fit(Net, windows(), validation=10), "validation=10 is no share"),
+        (lambda: windows(0), "there are none"),
+        (lambda: windows(readings={"gain": 1.0}), "has 60 rows for 1 windows"),
+        (
+            lambda: fit(Net, windows(), repair=uncertainty_training("gain:scale=0.8,onset=4")),
+            "from step 4' begins after their last step, and no window would have it: .* 4 steps",
+        ),
         (lambda: fit(Net, windows(), lambda out, target: out - target), "one number"),
         (lambda: fit(Net, windows(targets=np.zeros((60, 1)))), "correct one of the two"),
         (lambda: fit(Net, windows(), repair=reconstruction("gain")), "leave that place out"),

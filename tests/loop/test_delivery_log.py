@@ -11,6 +11,7 @@ from tap_toys import make
 
 from faultpath.faults import Fault, Scale
 from faultpath.loop import FaultedElsewhere, NotDelivered, Reading, Taps
+from faultpath.loop.corruption import corruptions
 
 DOUBLE = Fault(channel="mass", intervention=Scale(factor=2.0))
 LATE = DOUBLE.model_copy(update={"onset_step": 3, "duration_steps": 2}).aimed_at("observer")
@@ -151,13 +152,12 @@ def test_a_fault_that_reached_another_is_an_error() -> None:
 def test_taps_that_attach_a_fault_elsewhere_are_told_by_the_faults(
     monkeypatch: pytest.MonkeyPatch, reached: tuple[str, ...], error: type[Exception], sentence: str
 ) -> None:
-    attach = Taps._add  # pyright: ignore[reportPrivateUsage] - what is made wrong here
+    def misplaced(faults: Any, *more: Any) -> Any:
+        return corruptions(
+            (fault.model_copy(update={"readers": reached}) for fault in faults), *more
+        )
 
-    def misplaced(self: Taps, faults: Any, dt_s: float, seed: int) -> None:
-        moved = [fault.model_copy(update={"readers": reached}) for fault in faults]
-        attach(self, moved, dt_s, seed)
-
-    monkeypatch.setattr(Taps, "_add", misplaced)
+    monkeypatch.setattr("faultpath.loop.taps.corruptions", misplaced)
     taps = make([LATE])
     run(taps)
     with pytest.raises(error, match=sentence):
@@ -167,8 +167,9 @@ def test_taps_that_attach_a_fault_elsewhere_are_told_by_the_faults(
 def test_one_of_two_faults_that_is_not_attached_is_an_error(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    attach = Taps._add  # pyright: ignore[reportPrivateUsage] - what is made wrong here
-    monkeypatch.setattr(Taps, "_add", lambda self, faults, *more: attach(self, faults[:1], *more))
+    monkeypatch.setattr(
+        "faultpath.loop.taps.corruptions", lambda faults, *more: corruptions(faults[:1], *more)
+    )
     taps = make([LATE.model_copy(update={"onset_step": 0}), LATE])
     run(taps)
     with pytest.raises(NotDelivered, match=r"from step 3 .* names it, but did not act there"):

@@ -1,6 +1,7 @@
 """One loop: order, the past, time, queries, and what ran."""
 
 import contextlib
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -65,9 +66,31 @@ def test_the_plant_moves_by_what_came_through_the_tap() -> None:
     assert not instants[-1].inputs
 
 
-def test_a_port_of_the_past_gets_the_step_before_and_first_what_was_before() -> None:
+class Overwriting(Planner):
+    """Writes each order over the one before."""
+
+    def begin(self, batch):
+        return np.empty(len(batch.scenes))
+
+    def step(self, inputs, memory):
+        outputs, _ = super().step(inputs, None)
+        memory[:] = outputs["order"]
+        return {"order": memory}, memory
+
+
+class OverwritingLine(Line):
+    """Writes each place over the one before."""
+
+    def advance(self, state, inputs):
+        later = super().advance(state, inputs)
+        state.x[:] = later.x
+        return replace(later, x=state.x)
+
+
+@pytest.mark.parametrize("planner", [Planner, Overwriting])
+def test_a_port_of_the_past_gets_the_step_before_and_first_what_was_before(planner) -> None:
     observer = Guess()
-    execute((observer, Planner()))
+    execute((observer, planner()))
     assert [now[0] for now in observer.executed] == [-1, 0, 1, 2, 3, 4, 5, 6]
 
 
@@ -80,9 +103,10 @@ def test_a_port_of_the_past_gets_the_step_before_and_first_what_was_before() -> 
         (", rate_hz: 4", [1, 1, 1, 4, 4, 11, 11, 11]),
     ],
 )
-def test_rate_and_latency_of_a_source_are_executed(place, seen) -> None:
+@pytest.mark.parametrize("plant", [Line, OverwritingLine])
+def test_rate_and_latency_of_a_source_are_executed(place, seen, plant) -> None:
     observer = Guess()
-    execute((observer, Planner()), place=place)
+    execute((observer, Planner()), place=place, plant=plant())
     assert [each[0] for each in observer.seen] == seen
 
 

@@ -11,7 +11,20 @@ from libraries import LIBRARIES, to_torch
 from tap_toys import make
 
 from faultpath.core.errors import UserError
-from faultpath.faults import Fault, Freeze, Quantise, Scale
+from faultpath.faults import (
+    Bias,
+    Delay,
+    Drift,
+    Dropout,
+    Erase,
+    Fault,
+    Freeze,
+    Hold,
+    Noise,
+    Quantise,
+    Scale,
+    UniformScale,
+)
 from faultpath.loop import (
     IllegalRead,
     MalformedReading,
@@ -85,6 +98,11 @@ def test_wrong_names_are_a_users_mistake(given: dict[str, Any], sentence: str) -
     ("changes", "sentence"),
     [
         ({"intervention": Quantise(step_size=0.5)}, "quantise turns int64 [2] into float64 [2]"),
+        ({"intervention": UniformScale(half_range=0.2)}, "uniform_scale turns int64 [2] into frac"),
+        ({"intervention": Noise(std=0.3, relative=True)}, "noise turns int64 [2] into fractions"),
+        ({"intervention": Bias(std=0.3)}, "bias turns int64 [2] into fractions; choose one that "),
+        ({"intervention": Drift(rate_per_s=1.0)}, "drift turns int64 [2] into fractions"),
+        ({"intervention": Erase(default=0.5)}, "erase turns int64 [2] into fractions"),
         (
             {"intervention": Freeze(), "duration_steps": 1, "recovery_steps": 1},
             "freeze cannot recover step by step in int64",
@@ -96,6 +114,17 @@ def test_whole_numbers_are_not_turned_into_others(changes: dict[str, Any], sente
     whole = np.array([1, 2])
     with pytest.raises(UserError, match=re.escape(f"fault on channel 'mass': {sentence}")):
         [taps.deliver("mass", "observer.model", mass(step, whole), step) for step in range(2)]
+
+
+@pytest.mark.parametrize(
+    "intervention", [Delay(steps=1), Hold(every=2), Freeze(), Dropout(probability=1.0)]
+)
+@pytest.mark.parametrize("later", [int, bool, np.float32])
+def test_what_is_held_takes_the_type_that_the_source_has_by_then(intervention, later):
+    taps = make([SCALE.model_copy(update={"intervention": intervention})])
+    taps.deliver("mass", "observer.model", mass(0, np.array([1.0, 0.0])), 0)
+    got = taps.deliver("mass", "observer.model", mass(1, np.array([0, 1], later)), 1)
+    assert (got.tolist(), got.dtype) == ([1, 0], np.dtype(later))
 
 
 class TestModuleView:

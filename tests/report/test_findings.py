@@ -21,6 +21,7 @@ from faultpath.run.findings import (
 )
 
 OTHERWISE = Deviation(scenes=("s1", "s4"), of=4, ended=1, gaps=(("time_s", 0.25), ("note", None)))
+COUNTED = Deviation(scenes=("s1",), of=1, gaps=(("faulted_steps", 9.0),))
 AGAIN = {"unit": "key", "variant": "old", "faults": "gain scaled by 0.5", "seed": 3}
 FINDINGS = (
     (
@@ -30,6 +31,14 @@ FINDINGS = (
         "Results do not repeat: a second run of 4 scenes of 'old' under gain scaled by 0.5, seed "
         "3, without the other scenes of its block of 20, differs in 2 of 4 scenes, such as 's1' (1 "
         "trial with another end, time_s by up to 0.25, other note). ",
+    ),
+    (
+        Recheck(why="guarded", scenes=("s1",), unit_scenes=20, **AGAIN).model_copy(
+            update={"deviation": COUNTED}
+        ),
+        "Results do not repeat: a second run of 1 scene of 'old' under gain scaled by 0.5, seed 3, "
+        "alone, with a copy of every reading for each module, differs (every trial with the same "
+        "end, faulted_steps by up to 9). Only what is counted differs: a loop that ends with the ",
     ),
     (
         Recheck(why="guarded", scenes=("s1",), unit_scenes=20, wrote="tap a -> b.c", **AGAIN),

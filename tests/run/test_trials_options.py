@@ -4,7 +4,7 @@ from enum import Enum
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import pytest
-from pydantic import BaseModel, model_validator
+from pydantic import BaseModel, Field, model_validator
 
 from faultpath.core.errors import UserError
 from faultpath.system import Offered, Option
@@ -50,6 +50,10 @@ def anything(**options: str):
     return options
 
 
+def limited(mass_kg: Annotated[float, Field(gt=0), "Mass of the cart."] = 1.0):
+    return mass_kg
+
+
 def needy(path: str):
     return path
 
@@ -79,6 +83,8 @@ def test_text_becomes_what_the_factory_takes():
     assert call(modelled, {"gear": "high"}, "it") == Settings(gear=Gear.HIGH)
     assert call(modelled, {"carts": "2"}, "it") == Settings(carts=2)
     assert call(anything, {"wind": "L3"}, "it") == {"wind": "L3"}
+    plain = call(lambda fast=False, carts=1, mass=1.0: (fast, carts, mass), {"fast": "false"}, "it")
+    assert plain == (False, 1, 1.0)
 
 
 @pytest.mark.parametrize(
@@ -92,6 +98,8 @@ def test_text_becomes_what_the_factory_takes():
         (typed, {"colour": "red"}, "do not include 'colour': it takes gear, carts, fast, mass"),
         (modelled, {"carts": "3"}, "unknown carts '3'; choose one of 1, 2"),
         (modelled, {"gear": "high", "carts": "2"}, "of it do not fit: two carts have only a low"),
+        (limited, {"mass_kg": "-1"}, "the mass_kg '-1': it is '-1', and must be a number above 0"),
+        (lambda carts=1: carts, {"carts": "1.5"}, "the carts '1.5': it must be a whole number"),
         (lambda: None, {"colour": "red"}, "'colour': it takes none"),
         (needy, {}, "needs the option 'path'"),
     ],

@@ -72,6 +72,16 @@ MISTAKES = {
         '@writes("slope", past=("push", "slope"))\ndef observer(slope, speed',
         "'observer': it reads 'slope', which it writes itself: keep the value .* in `memory`",
     ),
+    "a name with a capital letter": (
+        'past="push")',
+        'past="push", name="Observer")',
+        "'Observer' cannot name a module, a place or a channel: use small letters",
+    ),
+    "a channel that is misspelt": (
+        CALL,
+        CALL[:-1] + ", channels={'sped': ['speed']})",
+        "no module reads what channels names: unknown channel 'sped'; did you mean 'speed'",
+    ),
     "no return": (
         "    return (-place",
         "    (-place",

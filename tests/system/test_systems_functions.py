@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 from gym_toys import SCENES, Steer, functions, trials
+from libraries import LIBRARIES
 
 from faultpath.core.errors import SystemMistake
+from faultpath.interface import transitive_readers
 from faultpath.system import ComposedSystem, Status, writes
 from faultpath.system.observed import hashed
 
@@ -86,6 +88,44 @@ def test_a_module_stands_in_for_a_source_of_several_numbers():
     assert len(trials(built, variant="guessing")) == len(SCENES)
 
 
+def test_modules_read_each_other_write_the_same_source_or_read_nothing():
+    """Each of them was refused, or left out of what the interface says."""
+
+    @writes("guess", past="wish")
+    def guess(place, wish):
+        return place + wish
+
+    @writes("guess", name="other")
+    def twice(place):
+        return 2.0 * place
+
+    @writes("wish", before=0.0)
+    def wish(guess):
+        return -guess
+
+    @writes("goal")
+    def goal():
+        return 1.0
+
+    @writes("push")
+    def push(wish, goal):
+        return wish + goal
+
+    plant = functions(start, step, observes={"place": "at"})
+    units = dict.fromkeys(("place", "guess", "wish", "goal", "push"), "m")
+    variants = {"one": [guess, wish, goal, push], "two": [twice, wish, goal, push]}
+    built = ComposedSystem("cart", plant, variants, units)
+    assert built.interface.reconstructs == {
+        "guess": ("guess",),
+        "other": ("guess",),
+        "wish": ("wish",),
+    }
+    assert built.interface.source("goal").provenance == "commanded"
+    reached = transitive_readers(built.interface, "place")
+    assert set(reached) == {"guess.place", "other.place", "wish.guess", "guess.wish", "push.wish"}
+    assert not any(outcome.failed for outcome in trials(built, variant="one"))
+
+
 def test_the_hash_of_a_state_that_holds_an_object_does_not_depend_on_places() -> None:
     def instance(name: str, module: str) -> object:
         return type(name, (), {"__module__": module})()
@@ -93,6 +133,12 @@ def test_the_hash_of_a_state_that_holds_an_object_does_not_depend_on_places() ->
     one, two = instance("Craft", "faultpath_system_a1"), instance("Craft", "faultpath_system_b2")
     assert hashed({"craft": one, "x": 1.0}) == hashed({"craft": two, "x": 1.0})
     assert hashed({"craft": one}) != hashed({"craft": instance("Boat", "faultpath_system_a1")})
+
+
+@LIBRARIES
+def test_the_hash_of_a_state_is_of_all_its_bits(to) -> None:
+    one, two = to(np.array([1.0, 2.0])), to(np.array([1.0, 2.0 + 1e-12]))
+    assert hashed({"at": one}) == hashed({"at": to(np.array([1.0, 2.0]))}) != hashed({"at": two})
 
 
 def test_a_key_that_the_state_has_not_is_told_with_those_that_it_has():

@@ -4,11 +4,13 @@ from functools import partial
 
 import numpy as np
 import pytest
-from gym_toys import SCENES, Keyed, Steer, Walk, plant, system, trials
+from gym_toys import REAL, SCENES, Keyed, Steer, Walk, plant, system, trials
+from gymnasium.spaces import Box, Tuple
 
 import faultpath
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.loop import Port
+from faultpath.run.attempt import Done, Raised, attempt
 from faultpath.run.check.blocks import BlockSpec, run_block
 from faultpath.run.code import system_code
 from faultpath.run.plan import SystemSpec, Treatment
@@ -61,6 +63,34 @@ def test_a_discrete_action_of_which_a_module_reads_the_past_passes_the_check():
     walker = plant(Keyed, observes={"place": ("at", 0)})
     built = system(walker, [predictor, controller], units={"push": "1", "lean": "m"})
     assert not faultpath.check(built, scenes=2, workers=0, progress=False).failures
+
+
+class Parts(Walk):
+    """The same, with its observation in parts and an action of small whole numbers."""
+
+    observation_space = Tuple((REAL, Box(-np.inf, np.inf, (2,), np.float64)))
+    action_space = Box(0, 255, (1,), np.uint8)
+
+    def step(self, action):
+        return super().step(action / 255)
+
+    def _seen(self):
+        return self.at, np.array([self.step_count, 2.0 * self.at])
+
+
+@pytest.mark.parametrize("size", [255, 300])
+def test_a_part_of_a_tuple_is_observed_and_an_action_too_large_for_its_type_fails(size):
+    @writes("push")
+    def mover(place, twice):
+        assert np.array_equal(twice, 2 * place)
+        return np.full(len(place), size)
+
+    built = system(
+        plant(Parts, observes={"place": 0, "twice": (1, 1)}), [mover], units={"twice": "m"}
+    )
+    done = attempt(built, Treatment(variant="only"), SCENES)
+    assert isinstance(done, Done if size == 255 else Raised)
+    assert size == 255 or done.error == "OverflowError: uint8 does not hold the action 300"
 
 
 def test_what_runs_is_the_interface():
@@ -213,6 +243,13 @@ def again(place, push):
     return push
 
 
+ONE = Walk()
+
+
+def slope_of_some(env, rng):
+    return {} if env.unwrapped.at > 0.2 else {"slope": 0.0}
+
+
 @pytest.mark.parametrize(
     ("make", "sentence"),
     [
@@ -241,6 +278,13 @@ def again(place, push):
             "'place' has 2 components",
         ),
         (lambda: trials(system(plant(trace=lambda env: []))), "`trace` returned 0 numbers"),
+        (lambda: plant(steps=0), "steps is 0: give a whole number of at least 1"),
+        (lambda: plant(lambda: ONE), "returned the same one twice: make a new one at each call"),
+        (lambda: plant(setup=lambda env, rng: 1.0), "`setup` returned 1.0: it must return values"),
+        (
+            lambda: trials(system(plant(setup=slope_of_some))),
+            "set-up of scene 'seed/1' returned slope, and that of 'seed/0' none",
+        ),
     ],
 )
 def test_mistakes_are_told_in_a_sentence(make, sentence):

@@ -31,6 +31,19 @@ def test_arguments_are_ports_and_what_is_given_is_read_no_more():
     assert half.before(Batch(("a", "b", "c"), 0, 0.1))["sum"].tolist() == [[1.0, 2.0]] * 3
 
 
+def test_a_value_stays_as_it_is_when_the_function_writes_into_its_memory():
+    @writes("sum")
+    def summed(now, memory):
+        memory = np.zeros(2) if memory is None else memory
+        memory += now
+        return memory, memory
+
+    inputs = Inputs("summed", 0, {Port("now", "now"): np.ones(2)}, {})
+    first, memory = summed.step(inputs, None)
+    second, _ = summed.step(inputs, memory)
+    assert [list(first["sum"]), list(second["sum"])] == [[1.0, 1.0], [2.0, 2.0]]
+
+
 def test_mistakes_are_told_in_a_sentence():
     with pytest.raises(SystemMistake, match="unknown argument 'nwo'; did you mean 'now'"):
         adder.given(nwo=1)
@@ -104,5 +117,9 @@ def test_rows_are_computed_one_at_a_time():
 
     product, first = row_wise(both)(np.arange(6.0).reshape(3, 2), 2.0)
     assert sizes == [1, 1, 1]
+    assert row_wise(both)(rows=np.ones((2, 2)), factor=3.0)[1].tolist() == [1, 1]
+    for wrong in ((np.ones((3, 2)), np.ones((2, 2))), (1.0, 2.0)):
+        with pytest.raises(SystemMistake, match=r"got arrays of different rows \((2, 3|none)\)"):
+            row_wise(both)(*wrong)
     assert product.tolist() == [[0, 2], [4, 6], [8, 10]]
     assert first.tolist() == [0, 2, 4]

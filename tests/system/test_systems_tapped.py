@@ -98,6 +98,7 @@ def test_a_mapping_is_delivered_however_it_is_read():
     def read(par):
         seen.update(item=par["mass"], get=par.get("mass"), missing=par.get("span", 7))
         seen.update(copied=dict(par), spread={**par}, values=list(par.values()))
+        seen.update(default=par.setdefault("mass", 9.0), popped=par.copy().pop("mass"))
         return par["mass"]
 
     module = writes("out", of=make)(read)
@@ -105,7 +106,28 @@ def test_a_mapping_is_delivered_however_it_is_read():
     module.step(Inputs("module", 0, readings, {}), module.begin(Batch(("a",), 0, 0.1)))
     both = {"mass": 4.0, "treatment": 0.2}
     assert (seen.pop("copied"), seen.pop("spread")) == (both, both)
+    assert (seen.pop("default"), seen.pop("popped")) == (4.0, 4.0)
     assert seen == {"item": 4.0, "get": 4.0, "missing": 7, "values": [4.0, 0.2]}
+
+
+def _pops(par):
+    assert par.pop("mass") == 4.0
+    return par.get("mass", 7.0)
+
+
+@pytest.mark.parametrize(
+    ("write", "value"),
+    [
+        (lambda par: par.update(mass=5.0) or par["mass"], 5.0),
+        (lambda par: par.__ior__({"mass": 6.0})["mass"], 6.0),
+        (_pops, 7.0),
+    ],
+)
+def test_what_a_reader_writes_into_a_mapping_is_its_own_however_it_writes(write, value):
+    module = writes("out", of=lambda: tapped({"mass": 1.0}, "mass", at="control"))(write)
+    readings = {Port("mass", "control.mass"): np.array([4.0])}
+    outputs, _ = module.step(Inputs("module", 0, readings, {}), module.begin(Batch(("a",), 0, 0.1)))
+    assert outputs["out"].tolist() == [value]
 
 
 def test_mistakes_are_told_in_a_sentence():
@@ -199,6 +221,37 @@ def test_delivery_logs_count_what_was_read_and_a_fault_after_a_write_is_not_deli
     assert isinstance(late, Failed)
     assert isinstance(late.error, NotDelivered)
     assert "flux -> observer.flux" in str(late.error)
+
+
+@pytest.mark.parametrize("fault", ["flux:delay=2", "flux:hold=3", "flux:freeze,onset=1"])
+def test_a_scene_that_reads_seldom_gets_the_same_whoever_reads_beside_it(fault):
+    def make():
+        return SimpleNamespace(par=tapped(Parameters(), "flux", at="control"), step=-1, seen=0.0)
+
+    @writes("voltage", of=make)
+    def seldom(parts, every):
+        parts.step += 1
+        if parts.step % every == 0:
+            parts.seen = parts.par.flux
+        return parts.seen
+
+    plant = functions(
+        lambda rng: {"current": 0.0, "flux": 0.0, "every": int(rng.integers(2, 5))},
+        lambda state, voltage, rng: (
+            state | {"current": state["current"] - voltage, "flux": state["flux"] + 1.0}
+        ),
+        observes={"current": "current", "flux": "flux", "every": "every"},
+        action="voltage",
+        steps=10,
+    )
+    units = {"current": "A", "flux": "Vs", "voltage": "V", "every": "1"}
+    built = ComposedSystem("drive", plant, {"only": [seldom]}, units)
+    treatment = Treatment(variant="only", faults=parse_fault(fault, built.interface, {}, 0.1))
+    scenes = tuple(f"seed/{i}" for i in range(4))
+    together = attempt(built, treatment, scenes)
+    alone = [attempt(built, treatment, (scene,)).outcomes[0] for scene in scenes]
+    assert list(together.outcomes) == alone
+    assert len({outcome.altered_steps for outcome in alone}) > 1
 
 
 def test_what_parts_share_is_found_and_what_a_run_writes_is_named():

@@ -95,8 +95,24 @@ def _moved(array: Array, device: Any) -> Array:
     return array.to(device, non_blocking=True)
 
 
+class Inexact(ValueError):
+    """Numbers with fractions were to be held in the whole numbers or truths of a reading."""
+
+
+def _check_exact(value: Any, reading: Array) -> None:
+    if not _has_fractions(reading):
+        numbers = np.asarray(value, np.float64)
+        truths = bool(namespace(reading).isdtype(reading.dtype, "bool"))
+        if np.any(numbers != (numbers.astype(bool) if truths else np.trunc(numbers))):
+            raise Inexact
+
+
 def like(host: HostArray, reading: Array) -> Array:
-    """Return `host` in the namespace, on the device and with the dtype of `reading`."""
+    """Return `host` in the namespace, on the device and with the dtype of `reading`.
+
+    Raises `Inexact` for fractions where that holds none; so do `constant` and `filled`.
+    """
+    _check_exact(host, reading)
     return match_device(host, reading, reading.dtype)
 
 
@@ -109,12 +125,14 @@ def constant(value: Constant, reading: Array) -> Any:
     """Return `value` ready to combine with `reading`; a tuple is copied to the device only once."""
     if not isinstance(value, tuple):
         return value
+    _check_exact(value, reading)
     return _constant_array(value, namespace(reading), reading.dtype, _COMPAT.device(reading))
 
 
 def filled(value: Constant, reading: Array) -> Array:
     """Return a new array like `reading` that holds `value` for every scene."""
     xp = namespace(reading)
+    _check_exact(value, reading)
     if not isinstance(value, tuple):
         return xp.full_like(reading, value)
     return copy(xp.broadcast_to(constant(value, reading), reading.shape))

@@ -86,7 +86,6 @@ class Interface(Frozen, allow_inf_nan=False):
         for index, channel in enumerate(self.channels):
             _check_channel(known, channel, ("channels", index))
         _check_reconstructions(self, known)
-        _check_cycles(self)
         return self
 
 
@@ -146,33 +145,6 @@ def _check_reconstructions(interface: Interface, known: Mapping[str, Source]) ->
                 f"source '{source.name}' is reconstructed but no module produces it; add it to "
                 "reconstructs",
             )
-
-
-def _check_cycles(interface: Interface) -> None:
-    """Refuse modules that reconstruct a source they depend on within a step."""
-    waiting = {
-        module: {
-            module_of(reader)
-            for channel in interface.channels
-            if not set(names).isdisjoint(channel.sources)
-            for reader in channel.readers
-        }
-        for module, names in interface.reconstructs.items()
-    }
-    while leaves := [m for m, below in waiting.items() if not below & waiting.keys()]:
-        for module in leaves:  # nothing they produce comes back to them
-            del waiting[module]
-    if not waiting:
-        return
-    path = [next(iter(waiting))]
-    while path[-1] not in path[:-1]:
-        path.append(min(waiting[path[-1]] & waiting.keys()))
-    cycle = " -> ".join(path[path.index(path[-1]) :])
-    raise _refuse(
-        ("reconstructs", path[-1]),
-        f"reconstructs: {cycle} is a cycle; a module that needs its own past keeps it in "
-        "its memory instead of reading it through a channel",
-    )
 
 
 def module_of(reader: str) -> str:

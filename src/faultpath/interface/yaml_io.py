@@ -17,12 +17,12 @@ from faultpath.interface.interface import Interface
 def read_interface(
     facts: Path | str | Mapping[str, Any],
     readers: Mapping[str, Sequence[str]] | None = None,
-    writers: Mapping[str, str] | None = None,
+    writers: Mapping[str, Sequence[str]] | None = None,
 ) -> Interface:
     """Return the interface in a YAML file, in YAML text (a `str` with a line break), or in data.
 
     Readers and reconstructions that it does not list are taken from `readers` (by channel) and
-    `writers` (module by source), where these are given.
+    `writers` (modules by source), where these are given.
 
     Raises `UserError` with file, line and what to do.
     """
@@ -57,7 +57,9 @@ def read_interface(
 
 
 def _complete(
-    data: dict[str, Any], readers: Mapping[str, Sequence[str]], writers: Mapping[str, str]
+    data: dict[str, Any],
+    readers: Mapping[str, Sequence[str]],
+    writers: Mapping[str, Sequence[str]],
 ) -> None:
     """Fill in readers and reconstructions; malformed data is left for validation."""
     for channel in _dicts(data, "channels"):
@@ -66,8 +68,9 @@ def _complete(
     outputs: dict[str, list[str]] = {}
     for source in _dicts(data, "sources"):
         name: str = source["name"]
-        if source.get("provenance") == "reconstructed" and name in writers:
-            outputs.setdefault(writers[name], []).append(name)
+        if source.get("provenance") == "reconstructed":
+            for module in writers.get(name, ()):
+                outputs.setdefault(module, []).append(name)
     if outputs:
         data.setdefault("reconstructs", outputs)
 

@@ -102,6 +102,8 @@ def fit(
 
     if seed < 0:
         raise UserError(f"fit: the seed {seed} is negative: seeds start at 0")
+    if not 0 <= validation <= 1:
+        raise UserError(f"fit: validation={validation} is no share, a number from 0 to 1")
     repairs = (repair,) if isinstance(repair, Repair) else tuple(repair)
     repairs = tuple(part.against(data.interface, data.dt_s, data.readers) for part in repairs)
     with torch.random.fork_rng():
@@ -183,7 +185,7 @@ class _WindowTask(FitTask):
         import torch
 
         def tensor(array: np.ndarray) -> Tensor:
-            return torch.from_numpy(np.ascontiguousarray(array)).to(self.device)
+            return torch.from_numpy(np.require(array, requirements=["C", "W"])).to(self.device)
 
         self.repairs, self.seed, self.schedule = repairs, seed, schedule
         parameter = next(net.parameters(), None)

@@ -10,7 +10,7 @@ import numpy as np
 
 from faultpath.core.arrays import Array, HostArray, namespace
 from faultpath.core.errors import UserError
-from faultpath.core.text import listed, unknown
+from faultpath.core.text import counted, listed, unknown
 from faultpath.faults import Fault
 from faultpath.interface import Interface, Provenance, module_of
 from faultpath.learning.model_card import Data
@@ -55,9 +55,11 @@ class Windows:
     def __post_init__(self) -> None:
         if not self.readings:
             raise UserError("windows: there are no readings; give them by channel")
-        readings = {name: np.asarray(value) for name, value in self.readings.items()}
+        readings = {name: np.atleast_1d(value) for name, value in self.readings.items()}
         object.__setattr__(self, "readings", readings)
         n = len(next(iter(readings.values())))
+        if not n:
+            raise UserError("windows: there are none: give readings of one or more")
         ids = tuple(self.ids) or tuple(f"window/{i:06d}" for i in range(n))
         object.__setattr__(self, "ids", ids)
         object.__setattr__(self, "episodes", tuple(self.episodes) or ids)
@@ -205,9 +207,15 @@ def delivered(
     For the taps a window is a scene. Its random numbers depend on its name, the seed and the epoch,
     not on its minibatch. `readings` hold the rows `index` of the windows'. Arrays are
     `[n, T, ...]`, or `[n, ...]` where windows have no steps. Raises `NotDelivered` where a fault
-    missed a reader that it names.
+    missed a reader that it names, and `UserError` where it begins after the last step.
     """
-    steps, interface = windows.steps, windows.interface
+    steps, interface, faults = windows.steps, windows.interface, tuple(faults)
+    for fault in faults:
+        if fault.onset_step >= (steps or 1):
+            raise UserError(
+                f"windows: '{fault.describe()}' begins after their last step, and no window would "
+                f"have it: they have {counted(steps or 1, 'step')}"
+            )
     ids = tuple(windows.ids[i] for i in index)
     taps = window_taps(interface, faults, ids, windows.dt_s, seed, epoch, windows.readers)
     ports = windows.ports

@@ -114,11 +114,14 @@ def interface_of(facts: Path | str | Mapping[str, Any], parts: Iterable[Part]) -
         UserError: The facts are no interface, or one of its channels has no reader.
     """
     readers: dict[str, dict[str, None]] = {}
-    writers: dict[str, str] = {}
+    writers: dict[str, dict[str, None]] = {}
     for part in parts:
         for port in sorted(part.ports):
             readers.setdefault(port.channel, {})[part.reader(port)] = None
-        writers |= dict.fromkeys(part.writes, part.name)
+        for source in part.writes if part.ports else ():
+            writers.setdefault(source, {})[part.name] = None
     return read_interface(
-        facts, {channel: tuple(names) for channel, names in readers.items()}, writers
+        facts,
+        {channel: tuple(names) for channel, names in readers.items()},
+        {source: tuple(names) for source, names in writers.items()},
     )

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, Protocol
 
-from faultpath.core.arrays import Array
+from faultpath.core.arrays import Array, copy, is_array
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import listed
 from faultpath.interface import Interface, Source
@@ -24,6 +24,7 @@ from faultpath.loop.parts import (
     label_of,
 )
 from faultpath.loop.reading import Reading
+from faultpath.loop.taps import UNREAD
 
 _SLACK = 1e-6
 """Share of a step by which rates and latencies may miss a whole step, through rounding."""
@@ -35,15 +36,17 @@ class SampledSource:
     A source of `rate_hz` is sampled at the first control step at or after each of its ticks, and
     held in between. A sample arrives `latency_s` later, rounded up to whole steps; until the first
     has arrived it is delivered early, since there is nothing else to deliver. A reading holds the
-    step at which it was sampled.
+    step at which it was sampled; one that is delivered in later steps is a copy, because its owner
+    may write into the value once the step is over.
     """
 
-    def __init__(self, source: Source, dt_s: float) -> None:
+    def __init__(self, source: Source, dt_s: float, read_past: bool = False) -> None:
         self._name = source.name
         samples_per_step = (source.rate_hz or math.inf) * dt_s
         self._every_step = samples_per_step >= 1 - _SLACK
         self._samples_per_step = samples_per_step
         self._latency_steps = math.ceil(source.latency_s / dt_s - _SLACK)
+        self._held = read_past or self._latency_steps > 0 or not self._every_step
         self._sample_index = -1
         self._in_transit: deque[Reading] = deque()
         """The newest sample that has arrived, and those after it that have not."""
@@ -55,6 +58,7 @@ class SampledSource:
         )
         if sample_index != self._sample_index:
             self._sample_index = sample_index
+            value = copy(value) if self._held and is_array(value) else value
             self._in_transit.append(Reading(value, self._name, step))
         samples = self._in_transit
         while len(samples) > 1 and samples[1].step + self._latency_steps <= step:
@@ -65,7 +69,9 @@ class SampledSource:
 class Deliverer(Protocol):
     """Methods of taps that a loop calls, for classes that wrap taps."""
 
-    def deliver(self, channel: str, reader: str, reading: Reading, step: int) -> Any:
+    def deliver(
+        self, channel: str, reader: str, reading: Reading, step: int, scene: int | None = None
+    ) -> Any:
         """Return the value that a reader gets; see `Taps.deliver`."""
         ...
 
@@ -107,9 +113,12 @@ class _Execution:
     def __init__(self, loop: Loop, batch: Batch, taps: Deliverer) -> None:
         self._graph = graph = loop.graph
         self._taps = taps
-        read = {graph.bindings[port.channel] for part in graph.parts for port in part.ports}
+        bound, parts = graph.bindings, graph.parts
+        read = {bound[port.channel] for part in parts for port in part.ports}
+        past = {bound[port.channel] for part in parts for port in part.reads_past}
         self._sources = {
-            name: SampledSource(loop.interface.source(name), batch.dt_s) for name in read
+            name: SampledSource(loop.interface.source(name), batch.dt_s, name in past)
+            for name in read
         }
         """Only those with a reader."""
         self._ports = {id(part): tuple(_ports_of(part, graph)) for part in graph.parts}
@@ -155,7 +164,7 @@ class _Execution:
 
     def _inputs(self, part: Part, step: int, truths: Mapping[str, Any], running: Array) -> Inputs:
         delivered: dict[tuple[str, str], Any] = {}
-        at_read: dict[Port, Callable[[], Any]] = {}
+        at_read: dict[Port, Callable[..., Any]] = {}
         for port, reader, source, past, at_read_only in self._ports[id(part)]:
             reading = self._previous.get(source) if past else self._current[source]
             if reading is None:
@@ -163,10 +172,12 @@ class _Execution:
                     f"{label_of(part)} reads what channel '{port.channel}' held one step before, "
                     f"but {self._no_past(source)}"
                 )
+            deliver = partial(self._taps.deliver, port.channel, reader, reading, step)
             if at_read_only:
-                at_read[port] = partial(self._taps.deliver, port.channel, reader, reading, step)
+                deliver(UNREAD)
+                at_read[port] = deliver
             else:
-                delivered[port] = self._taps.deliver(port.channel, reader, reading, step)
+                delivered[port] = deliver()
         declared = part.truths if isinstance(part, Module) else ()
         shown = {name: truths[name] for name in declared}
         return Inputs(part.name, step, delivered, shown, running, at_read, label_of(part))

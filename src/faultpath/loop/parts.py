@@ -44,7 +44,7 @@ class Inputs(dict[tuple[str, str], Any]):
         delivered: Mapping[tuple[str, str], Any],
         truths: Mapping[str, Any],
         running: Array = None,
-        at_read: Mapping[Port, Callable[[], Any]] | None = None,
+        at_read: Mapping[Port, Callable[..., Any]] | None = None,
         label: str = "",
     ) -> None:
         super().__init__(delivered)
@@ -55,7 +55,7 @@ class Inputs(dict[tuple[str, str], Any]):
         self.running = running
         """Which scenes still run, bool `[B]`, so that a module can skip the others; `None`: all."""
         self.at_read = at_read or {}
-        """Deliveries that happen only when a port is accessed."""
+        """Deliveries that happen only when a port is accessed, by all scenes or by one."""
         self._truths = truths
 
     def __missing__(self, port: tuple[str, str]) -> Any:
@@ -67,6 +67,12 @@ class Inputs(dict[tuple[str, str], Any]):
             f"{self._label} looked for channel '{channel}' at '{place}', a port that it "
             f"does not declare: add Port('{channel}', '{place}') to its reads"
         )
+
+    def row(self, port: Port, scene: int) -> Any:
+        """Return what one scene gets at a port; no other scene of the batch counts as reading."""
+        if port not in self and (deliver := self.at_read.get(port)):
+            return deliver(scene)[scene]
+        return self[port][scene]
 
     def truth(self, name: str) -> Any:
         """Return a truth that the plant shows; `IllegalRead` for an undeclared one."""

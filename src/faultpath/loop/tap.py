@@ -1,4 +1,4 @@
-"""One tap: the faults that act there, the checks of its readings, and its counts."""
+"""One tap: the checks of its readings, and its counts."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
@@ -17,9 +17,8 @@ from faultpath.core.arrays import (
 )
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
-from faultpath.faults import Draws, Fault, Moment
-from faultpath.faults.base import Memory
 from faultpath.interface import Interface, Provenance
+from faultpath.loop.corruption import Corruption, fractional
 from faultpath.loop.delivery_log import FaultLog, Guard, StepCounter, TapLog
 from faultpath.loop.reading import (
     IllegalRead,
@@ -30,54 +29,6 @@ from faultpath.loop.reading import (
     TapError,
     UndeclaredReader,
 )
-
-
-class Corruption:
-    """A resolved fault as it acts on the deliveries of one tap."""
-
-    __slots__ = ("_draws", "_dt_s", "_memories", "fault", "in_force")
-
-    def __init__(self, fault: Fault, draws: Draws, dt_s: float) -> None:
-        self.fault = fault
-        self.in_force = StepCounter()
-        self._draws = draws
-        self._dt_s = dt_s
-        self._memories: dict[int, Memory] = {}
-        """By request within a step; a reading that is no query counts as request 0."""
-
-    def act(self, reading: Array, step: int, request: int = 0) -> tuple[Array, bool]:
-        """Return the value, and whether the fault is in force.
-
-        Raises `UserError` where the intervention cannot act on such a reading.
-        """
-        fault, intervention = self.fault, self.fault.intervention
-        if fault.over(step):
-            self._memories.clear()
-            return reading, False
-        draws = self._draws.beside(f"?{request}") if request else self._draws
-        moment = Moment(step, step - fault.onset_step, self._dt_s, draws)
-        if request not in self._memories:
-            self._memories[request] = intervention.begin(reading, moment)
-        value, self._memories[request] = intervention.apply(
-            reading, self._memories[request], moment
-        )
-        if value is not reading and (value.dtype != reading.dtype or value.shape != reading.shape):
-            raise UserError(
-                f"{self._prefix} turns {reading.dtype} {list(reading.shape)} into {value.dtype} "
-                f"{list(value.shape)}; choose one that keeps them"
-            )
-        weight = fault.weight(step)
-        if weight in (0.0, 1.0):
-            return (value, True) if weight else (reading, False)
-        if not namespace(reading).isdtype(reading.dtype, "real floating"):
-            raise UserError(
-                f"{self._prefix} cannot recover step by step in {reading.dtype}; leave recovery out"
-            )
-        return reading + (value - reading) * weight, True
-
-    @property
-    def _prefix(self) -> str:
-        return f"fault on channel '{self.fault.channel}': {self.fault.intervention.kind}"
 
 
 @dataclass(slots=True, eq=False)
@@ -95,10 +46,16 @@ class Tap:
     answers: int = 0
     """Answers of queries, over all steps."""
     last_step: int = -1
+    read_step: int = -1
+    """Last step in which a scene read."""
+    read_by: set[int | None] = field(default_factory=set[int | None])
+    """Scenes that read in that step; `None`: all."""
     value: Array = None
     """Value of this step's reading, before any fault."""
     cached: Array = None
     """Value delivered this step."""
+    marks: tuple[tuple[StepCounter, Any], ...] = ()
+    """Scenes to count in this step: those in which faults are in force, and altered readings."""
     finite: Array = None
     """Mask of the first reading's finite numbers, until it has been checked."""
     guard: Guard | None = None
@@ -149,7 +106,7 @@ class Tap:
                 f"tap {self}: the reading is of {value.dtype}; a source gives real numbers or "
                 "truths"
             )
-        if namespace(value).isdtype(value.dtype, "real floating"):
+        if fractional(value):
             self.finite = namespace(value).isfinite(value)
             if device_kind(value) == "cpu":
                 self.check_finite(scenes)

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from faultpath.core.arrays import Array, differs, match_device, namespace, read_only, to_numpy
 from faultpath.core.errors import UserError
 from faultpath.core.text import unknown
-from faultpath.faults import Draws, Fault
+from faultpath.faults import Fault
 from faultpath.interface import Interface, modules
+from faultpath.loop.corruption import corruptions
 from faultpath.loop.delivery_log import DeliveryLog, Guard, StepCounter
 from faultpath.loop.reading import (
     MalformedReading,
@@ -23,8 +24,11 @@ from faultpath.loop.reading import (
     TapError,
     WrittenTo,
 )
-from faultpath.loop.tap import Corruption, DeliveryListener, Tap, refusal, wire
+from faultpath.loop.tap import DeliveryListener, Tap, refusal, wire
 from faultpath.loop.trajectory import Trajectories
+
+UNREAD = -1
+"""In place of a scene that reads: none does."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,37 +96,27 @@ class Taps:
         for fault in faults:
             for reader in fault.readers:
                 self._named.setdefault((fault.channel, reader), []).append(fault.describe())
-        self._add(faults, dt_s, seed)
+        for reader, corruption in corruptions(faults, self._scenes, dt_s, seed):
+            fault = corruption.fault
+            if (fault.channel, reader) not in self._taps:
+                raise UserError(
+                    f"fault '{fault.describe()}' has no tap at '{reader}': spell out its readers "
+                    "with faultpath.faults.resolve"
+                )
+            self._taps[fault.channel, reader].add(corruption)
 
-    def _add(self, faults: Iterable[Fault], dt_s: float, seed: int) -> None:
-        # One object for equal draws, so that numbers are drawn once for all readers.
-        shared: dict[Draws, Draws] = {}
-        loaded: dict[Draws | None, Fault] = {}
-        for fault in faults:
-            draws = fault.draws(self._scenes, seed)
-            if abs(fault.loading) < 1:
-                if draws.own in loaded:
-                    raise UserError(
-                        f"faults '{loaded[draws.own].describe()}' and '{fault.describe()}' have "
-                        "a loading and draw the same numbers nevertheless: give them different "
-                        "causes"
-                    )
-                loaded[draws.own] = fault
-            draws = shared.setdefault(draws, draws)
-            for reader in fault.readers:
-                if (fault.channel, reader) not in self._taps:
-                    raise UserError(
-                        f"fault '{fault.describe()}' has no tap at '{reader}': spell out its "
-                        "readers with faultpath.faults.resolve"
-                    )
-                self._taps[fault.channel, reader].add(Corruption(fault, draws, dt_s))
-
-    def deliver(self, channel: str, reader: str, reading: Reading, step: int) -> Array:
+    def deliver(
+        self, channel: str, reader: str, reading: Reading, step: int, scene: int | None = None
+    ) -> Array:
         """Return the value that `reader` gets of `channel` at control step `step`.
 
         Without a fault on this tap that is `reading.value` itself, uncopied; a NumPy array is
         returned as a read-only view. A second delivery in one step returns the value of the first.
         A query is returned as a function of a request; see `Query`.
+
+        It counts as a read of all scenes, or of the one with the index `scene`. With `UNREAD`
+        nobody reads, but faults act on the reading, so that those that hold readings do not
+        depend on who reads when.
 
         Raises:
             UndeclaredReader: This variant has no such reader of the channel.
@@ -142,17 +136,17 @@ class Taps:
         ):
             raise refusal(self._interface, tap, channel, reader, reading, step)
         value = reading.value
+        if scene == UNREAD and not tap.corruptions:
+            return None
+        if scene != UNREAD and not (tap.deliveries or isinstance(value, Query)):
+            tap.check_first(value, self._scenes)
         if step != tap.last_step:
             if step < tap.last_step:
                 raise MalformedReading(
                     f"tap {tap}: step {step} comes after step {tap.last_step}; a new run needs "
                     "new taps"
                 )
-            if not (tap.deliveries or isinstance(value, Query)):
-                tap.check_first(value, self._scenes)
-            tap.last_step = step
-            tap.deliveries += 1
-            tap.value = value
+            tap.last_step, tap.value = step, value
             if isinstance(value, Query):
                 tap.cached = partial(self._answer, tap, value, step, count())
             else:
@@ -163,13 +157,37 @@ class Taps:
                     value = self._shared_view
                 elif tap.guard is not None:
                     value = tap.guard.hand_out(value)
-                self._trajectories.note(value)
                 tap.cached = value
         elif value is not tap.value:
             tap.check_same(value, step)
-        if self._observer is not None:
-            self._observer.delivered(tap, reading, step, tap.cached)
+        if scene != UNREAD:
+            self._note_read(tap, step, scene)
+            if self._observer is not None:
+                self._observer.delivered(tap, reading, step, tap.cached)
         return tap.cached
+
+    def _note_read(self, tap: Tap, step: int, scene: int | None) -> None:
+        """Count a read, once a step and scene."""
+        if step != tap.read_step:
+            tap.read_step, tap.read_by = step, set()
+            tap.deliveries += 1
+        if None in tap.read_by or scene in tap.read_by:
+            return
+        tap.read_by.add(scene)
+        if isinstance(tap.value, Query):
+            return  # each answer is counted
+        only = None if scene is None else np.arange(len(self._scenes)) == scene
+        self._count(tap, step, only)
+        self._trajectories.note(tap.cached, only)
+
+    def _count(self, tap: Tap, step: int, only: NDArray[np.bool_] | None = None) -> None:
+        """Count what faults did at a tap in this step, in all scenes or in `only` some."""
+        for counter, mask in tap.marks:
+            if only is not None and mask is not False:
+                mask = only if mask is True else mask & match_device(only, mask)
+            counter.note(step, mask)
+            if counter is self._faulted and self._observer is not None:
+                self._observer.faulted(step, mask)
 
     def _answer(
         self, tap: Tap, query: Query, step: int, numbers: Iterator[int], request: Any
@@ -190,6 +208,7 @@ class Taps:
                 tap.check_first(value, self._scenes)
             if tap.corruptions:
                 value = self._corrupted(tap, value, step, number)
+                self._count(tap, step)
             if tap.guard is not None:
                 value = tap.guard.hand_out(value)
             if value is not clean:
@@ -199,22 +218,22 @@ class Taps:
         return delivered
 
     def _corrupted(self, tap: Tap, reading: Array, step: int, request: int = 0) -> Array:
+        """Return the value after all faults, and note in the tap what is to be counted of it."""
         tap.check_shape(reading)
         value, faulted = reading, False
+        marks: list[tuple[StepCounter, Any]] = []
         for corruption in tap.corruptions:
             value, in_force = corruption.act(value, step, request)
             in_force = self._where_active(in_force, reading)
-            corruption.in_force.note(step, in_force)
+            marks.append((corruption.in_force, in_force))
             faulted = in_force if faulted is False else faulted | in_force
         if len(tap.corruptions) > 1:
-            tap.faulted.note(step, faulted)
-        self._faulted.note(step, faulted)
-        if self._observer is not None:
-            self._observer.faulted(step, faulted)
+            marks.append((tap.faulted, faulted))
+        marks.append((self._faulted, faulted))
         if value is not reading and faulted is not False:
             altered = self._where_active(differs(value, reading), reading)
-            tap.altered.note(step, altered)
-            self._altered.note(step, altered)
+            marks += [(tap.altered, altered), (self._altered, altered)]
+        tap.marks = tuple(marks)
         return value
 
     def set_active(self, mask: Array | None) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from faultpath.core.arrays import Array, copy, is_array, row_bytes, to_numpy
+from faultpath.core.arrays import Array, HostArray, copy, is_array, row_bytes, to_numpy
 
 _LARGEST_BUFFER = 1 << 22
 """Bytes hashed together: one call a scene is far cheaper than one a delivery."""
@@ -33,8 +33,8 @@ class Trajectories:
         """Set which scenes run from now on, bool `[B]`; `None`: all."""
         self._mask, self._kept_mask = mask, None
 
-    def note(self, value: Any) -> None:
-        """Add a value that a reader got.
+    def note(self, value: Any, only: HostArray | None = None) -> None:
+        """Add a value that a reader got in all scenes, or in `only` some, bool `[B]`.
 
         Values without a row a scene, such as the answers of a query, are left out: they show in
         what the reader does with them.
@@ -46,7 +46,10 @@ class Trajectories:
             self._kept_mask = copy(self._mask)  # the plant may reuse its mask later
         # Without its autograd graph, which would keep all steps in memory.
         value = value.detach() if hasattr(value, "detach") else value
-        self._waiting.append((copy(value), self._kept_mask))
+        mask = self._kept_mask
+        if only is not None:
+            mask = only if mask is None else only & to_numpy(mask)
+        self._waiting.append((copy(value), mask))
         self._size += prod(value.shape) * 8
         if self._size > _LARGEST_BUFFER:
             self._flush()
@@ -61,7 +64,7 @@ class Trajectories:
             return
         scenes = len(self._hashes)
         masks, widths, parts = list[Array](), list[int](), list[NDArray[np.uint8]]()
-        for value, mask in self._waiting:  # all values of a step share one mask
+        for value, mask in self._waiting:  # most values of a step share one mask
             parts.append(row_bytes(value))
             if not masks or mask is not masks[-1]:
                 masks.append(mask)

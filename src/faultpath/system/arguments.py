@@ -54,6 +54,12 @@ def modules_of(variant: str, modules: Any) -> Sequence[Module]:
     return cast("Sequence[Module]", modules)
 
 
+def odd_name(module: Module) -> str | None:
+    """Return a name of a module, its places or channels that an interface cannot have."""
+    names = (n for port in module.ports for n in (port.channel, *module.reader(port).split(".")))
+    return next((name for name in names if not re.fullmatch(r"[a-z][a-z0-9_]*", name)), None)
+
+
 def plant_of(plant: Any) -> Plant:
     """Return the plant of a system."""
     if not isinstance(plant, Plant):

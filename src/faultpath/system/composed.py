@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from hashlib import sha256
 from os import PathLike
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from typing_extensions import override
@@ -13,10 +13,11 @@ from typing_extensions import override
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.text import unknown
 from faultpath.interface import Interface
-from faultpath.loop import Batch, Loop, Module, Reading, graph, interface_of
+from faultpath.loop import Loop, Module, graph, interface_of
 from faultpath.system.arguments import (
     channels_of,
     modules_of,
+    odd_name,
     seeds_of,
     shown,
     units_of,
@@ -27,6 +28,7 @@ from faultpath.system.declared import Library, SceneRef
 from faultpath.system.episodes import SCENE, EpisodePlant
 from faultpath.system.loop_system import LoopSystem
 from faultpath.system.modules import FunctionModule
+from faultpath.system.shapes import first_shapes
 from faultpath.system.system import BLOCK
 
 SCENES: Mapping[str, Sequence[int]] = {
@@ -59,8 +61,8 @@ class ComposedSystem(LoopSystem):
 
     Readers follow from the modules' ports, shapes from the first step of each variant. Sources that
     the plant senses are measured, values that a scene's set-up returns are estimated (their
-    channels have a fidelity gap), the plant's input is commanded, modules' outputs are
-    reconstructed.
+    channels have a fidelity gap), the plant's input and outputs of modules that read nothing are
+    commanded, other outputs of modules are reconstructed.
 
     Args:
         name: Name of the system.
@@ -110,19 +112,15 @@ class ComposedSystem(LoopSystem):
                 for channel, sources in alternatives.items()
             }
         self._interface = self._declared(units, alternatives, plant.shapes)
-        recorder = _ShapeRecorder()
+        shapes: dict[str, tuple[int, ...]] = {}
         for variant in self._parts:
             bindings = self._bindings[variant]
             try:
                 executable = graph(self._interface, plant, self.modules(variant, None), bindings)
             except SystemMistake as error:
                 raise SystemMistake(f"variant '{variant}': {error}") from None
-            batch = Batch((f"{SCENE}0",), 0, self.control_dt_s)
-            loop = Loop(self._interface, executable)
-            first = next(iter(loop.execute(batch, cast("Any", recorder))))
-            for world in first.state.worlds:
-                world.close()
-        self._interface = self._declared(units, alternatives, plant.shapes | recorder.shapes)
+            shapes = first_shapes(Loop(self._interface, executable), plant.dt_s) | shapes
+        self._interface = self._declared(units, alternatives, plant.shapes | shapes)
 
     @property
     @override
@@ -183,6 +181,11 @@ class ComposedSystem(LoopSystem):
             port.channel for part in (*modules, plant) for port in sorted(part.ports)
         )
         feeds = {channel: alternatives.get(channel, (channel,)) for channel in read}
+        if idle := alternatives.keys() - read:
+            raise SystemMistake(
+                f"system '{self.name}': no module reads what channels names: "
+                f"{unknown('channel', min(idle), read)}"
+            )
         # Until a first step shows a module's output, it has the shape of the source it replaces.
         for fed in feeds.values():
             if shaped := [name for name in fed if name in shapes]:
@@ -190,7 +193,15 @@ class ComposedSystem(LoopSystem):
         written = [name for module in modules for name in module.writes]
         known = dict.fromkeys(plant.senses, "measured") | dict.fromkeys(plant.facts, "estimated")
         known |= dict.fromkeys(alternatives.get(plant.action, (plant.action,)), "commanded")
+        computed = {name for module in modules if module.ports for name in module.writes}
+        known |= dict.fromkeys(set(written) - computed, "commanded")
         for module in modules:
+            if odd := odd_name(module):
+                raise self._mistake(
+                    module,
+                    f"'{odd}' cannot name a module, a place or a channel: use small letters, "
+                    "digits and '_', a letter first; `name=` of @writes names a module",
+                )
             for port in sorted(module.ports):
                 there = list(dict.fromkeys((*plant.senses, *plant.facts, *written)))
                 if not {*feeds[port.channel]} & {*there}:
@@ -283,19 +294,3 @@ class ComposedSystem(LoopSystem):
                     "of its numbers once"
                 )
         return facts
-
-
-class _ShapeRecorder:
-    """Stands in for the taps during a first step, and records the shapes of readings."""
-
-    def __init__(self) -> None:
-        self.shapes: dict[str, tuple[int, ...]] = {}
-
-    def set_active(self, mask: Any) -> None:
-        del mask
-
-    def deliver(self, channel: str, reader: str, reading: Reading, step: int) -> Any:
-        del channel, reader, step
-        if hasattr(reading.value, "shape"):
-            self.shapes.setdefault(reading.source, tuple(np.shape(reading.value)[1:]))
-        return reading.value

@@ -11,7 +11,7 @@ from typing_extensions import override
 from faultpath.core.arrays import HostArray, to_numpy
 from faultpath.core.error_source import mistake_in
 from faultpath.core.errors import SystemMistake
-from faultpath.core.text import unknown
+from faultpath.core.text import listed, unknown
 from faultpath.loop import Batch, Inputs, Plant, Port, Progress
 from faultpath.system.arguments import check_episode, number_of, shown, truth_of
 from faultpath.system.observed import Selector, select
@@ -168,6 +168,12 @@ class EpisodePlant(Plant):
     @override
     def start(self, batch: Batch) -> _Batch:
         worlds, n = [self.world(name, batch.seed) for name in batch.scenes], len(batch.scenes)
+        for name, world in zip(batch.scenes, worlds, strict=True):
+            if set(world.facts) != set(self.facts):
+                raise SystemMistake(
+                    f"the set-up of scene '{name}' returned {listed(world.facts)}, and that of "
+                    f"'{SCENE}0' {listed(self.facts)}: return the same names for each scene"
+                )
         observations = [world.observation for world in worlds]
         sensed = self._sensed(worlds, observations)
         return _Batch(

@@ -8,18 +8,19 @@ import re
 import sys
 from collections.abc import Callable, Mapping
 from types import ModuleType
-from typing import Any
+from typing import Any, cast
 
 import gymnasium
 import numpy as np
 from typing_extensions import override
 
 from faultpath.core.arrays import HostArray
+from faultpath.core.error_source import mistake_in
 from faultpath.core.errors import SystemMistake
 from faultpath.core.streams import generator
 from faultpath.core.text import ADDRESS
 from faultpath.core.trees import release
-from faultpath.system.arguments import check_call
+from faultpath.system.arguments import check_call, shown
 from faultpath.system.episodes import (
     SCENE,
     Episode,
@@ -90,27 +91,31 @@ class GymnasiumPlant(EpisodePlant):
                 check_call(name, function, arguments)
         self._environment, self._setup, self._on_step = environment, setup, on_step
         self._limit, self._observation = steps, observation
-        sample = self._make()
+        self._sample: Any = None
+        self._sample = sample = self._make()
         self.identity, self.code = _identity(sample), _code(sample)
-        steps = steps or getattr(sample.spec, "max_episode_steps", None)
-        dt_s = dt_s or getattr(sample.unwrapped, "dt", None)
+        if steps is None:
+            steps = getattr(sample.spec, "max_episode_steps", None)
+        if dt_s is None:
+            dt_s = getattr(sample.unwrapped, "dt", None)
         if setup is not None and observation is None:
             _check_observation(sample, setup)
         sample.close()
         for what, value in {"steps": steps, "dt_s": dt_s}.items():
-            if not value:
+            if value is None:
                 raise SystemMistake(f"GymnasiumPlant: the environment does not say {what}: give it")
         returned = Measure(Metric(unit="1", better="more"), lambda episode: episode.returned)
         super().__init__(
             observes=observes,
             action=action,
-            steps=int(steps or 0),
+            steps=steps or 0,
             dt_s=float(dt_s or 0),
             succeeded=succeeded,
             metrics={"return": returned, **(metrics or {})},
             trace=trace,
             render=render,
         )
+        self._sample = None
 
     @override
     def world(self, scene: str, seed: int) -> SceneInstance:
@@ -123,7 +128,13 @@ class GymnasiumPlant(EpisodePlant):
         facts: Mapping[str, Any] = {}
         if self._setup:
             rng = generator("environment/setup", scene, 0)
-            facts = self._setup(env, rng) or {}
+            returned = self._setup(env, rng)
+            facts = {} if returned is None else returned
+            if not isinstance(cast("Any", facts), Mapping):
+                raise mistake_in(
+                    self._setup,
+                    f"`setup` returned {shown(facts)}: it must return values by name, or nothing",
+                )
             disturbance = hashed((sorted(facts.items()), rng.bit_generator.state))
         if self._observation:
             observation = self._observation(env)
@@ -146,6 +157,8 @@ class GymnasiumPlant(EpisodePlant):
                 )
             try:
                 row = action.reshape(space.shape).astype(space.dtype)
+                if space.dtype.kind in "iu" and np.any(row != action.reshape(space.shape)):
+                    raise OverflowError(f"{space.dtype} does not hold the action {action}")
             except ValueError:
                 raise SystemMistake(
                     f"the environment takes actions of shape {list(space.shape)}, and one scene's "
@@ -157,7 +170,14 @@ class GymnasiumPlant(EpisodePlant):
 
     def _make(self) -> Any:
         if not isinstance(self._environment, str):
-            return self._environment()
+            environment = self._environment()
+            if environment is self._sample:
+                raise mistake_in(
+                    self._environment,
+                    "the function of the environment returned the same one twice: make a new one "
+                    "at each call, since scenes run side by side",
+                )
+            return environment
         limit: dict[str, Any] = {} if self._limit is None else {"max_episode_steps": self._limit}
         return gymnasium.make(self._environment, **limit)
 

@@ -8,7 +8,7 @@ from typing import Any, cast
 import numpy as np
 from typing_extensions import override
 
-from faultpath.core.arrays import is_array, namespace
+from faultpath.core.arrays import copy, is_array, namespace
 from faultpath.core.error_source import described, location, location_of, mistake_in
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import unknown
@@ -54,7 +54,7 @@ def writes(
     """
     past = (past,) if isinstance(past, str) else tuple(past)
     return lambda function: FunctionModule(
-        function, source, past, before, {}, of, name or function.__name__
+        function, source, past, before, {}, of, name or getattr(function, "__name__", "")
     )
 
 
@@ -221,7 +221,8 @@ class FunctionModule(Module):
                 f"module '{self.name}' has a memory and returned no pair: return (value, memory)",
             )
         value, memory = cast("tuple[Any, Any]", pair)
-        return {self.writes[0]: value}, memory
+        # A memory that the function goes on writing into may be the value itself.
+        return {self.writes[0]: copy(value) if is_array(value) else value}, memory
 
 
 def _required_arguments(make: Callable[..., Any]) -> dict[str, Parameter]:
@@ -242,14 +243,25 @@ def row_wise(function: Callable[..., Any]) -> Callable[..., Any]:
 
     A matrix product rounds differently for another number of rows; row by row each scene gets the
     same bits whatever the other scenes. Arrays, also the returned ones, are `[B, ...]`; all other
-    arguments are passed on unchanged.
+    arguments are passed on unchanged. Raises `SystemMistake` for arrays of different B, or none.
     """
 
-    def each(*values: Any) -> Any:
-        rows = max(len(value) for value in values if is_array(value) and value.ndim)
+    def each(*values: Any, **named: Any) -> Any:
+        counts = {len(v) for v in (*values, *named.values()) if is_array(v) and v.ndim}
+        if len(counts) != 1:
+            counts_shown = ", ".join(map(str, sorted(counts))) or "none"
+            raise mistake_in(
+                function,
+                f"a function that is row_wise got arrays of different rows ({counts_shown}): give "
+                "it arrays with one row a scene, and what is the same for all scenes beforehand",
+            )
+
+        def row(value: Any, i: int) -> Any:
+            return value[i : i + 1] if is_array(value) and value.ndim else value
+
         single = [
-            function(*(v[i : i + 1] if is_array(v) and v.ndim else v for v in values))
-            for i in range(rows)
+            function(*(row(v, i) for v in values), **{n: row(v, i) for n, v in named.items()})
+            for i in range(counts.pop())
         ]
         if isinstance(single[0], tuple):
             return tuple(namespace(parts[0]).concat(parts) for parts in zip(*single, strict=True))

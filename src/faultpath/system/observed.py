@@ -8,7 +8,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from faultpath.core.arrays import HostArray
+from faultpath.core.arrays import HostArray, is_array, to_numpy
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import ADDRESS, listed
 
@@ -41,7 +41,12 @@ def select(
             else:
                 part = batch()
             for key in keys:
-                part = _part(name, part, key, observed) if isinstance(key, str) else part[:, key]
+                if isinstance(key, str):
+                    part = _part(name, part, key, observed)
+                elif isinstance(part, tuple):
+                    part = cast("tuple[Any, ...]", part)[key]
+                else:
+                    part = part[:, key]
             sources[name] = np.array(part)
     except (LookupError, TypeError) as error:
         shape = getattr(batch(), "shape", None)
@@ -104,8 +109,8 @@ def hashed(*parts: Any) -> str:
             return str({str(key): exact(value) for key, value in items})
         if isinstance(part, tuple | list):
             return str([exact(element) for element in cast("Sequence[Any]", part)])
-        if isinstance(part, np.ndarray | np.generic):
-            array = cast("HostArray", part)
+        if isinstance(part, np.generic) or is_array(part):
+            array = to_numpy(part)
             return f"{array.dtype}{array.shape}{array.tobytes().hex()}"
         return _LOCATION.sub("", repr(part))
 

@@ -15,7 +15,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any, Literal, TypeVar, get_args, get_origin
+from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel, PydanticSchemaGenerationError, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
@@ -51,7 +51,8 @@ class Option:
     @property
     def kind(self) -> str:
         """Type of its values as help shows it: `int`, `float`, or `str` for all others."""
-        kind = _needed(self.annotation)
+        kind = self.annotation
+        kind = _needed(get_args(kind)[0] if get_origin(kind) is Annotated else kind)
         return kind.__name__ if kind in (int, float) else "str"
 
     def read(self, text: str, system: str) -> Any:
@@ -153,8 +154,10 @@ def _declared(factory: Factory) -> tuple[dict[str, Option], type[BaseModel] | No
         kinds = (parameter.POSITIONAL_OR_KEYWORD, parameter.KEYWORD_ONLY)
         if model is None and parameter.kind in kinds:
             written = parameter.annotation
-            known = str if written is parameter.empty or isinstance(written, str) else written
+            known = str if isinstance(written, str) else written
             default = ... if parameter.default is parameter.empty else parameter.default
+            if written is parameter.empty:  # a flag that is off by default is no text
+                known = type(default) if isinstance(default, bool | int | float) else str
             fields[name] = FieldInfo.from_annotated_attribute(hints.get(name, known), default)
     options = dict[str, Option]()
     for name, info in fields.items():
@@ -168,7 +171,7 @@ def _declared(factory: Factory) -> tuple[dict[str, Option], type[BaseModel] | No
             None if required or info.default is None else _text(info.default),
             required,
             values,
-            info.annotation,
+            Annotated[info.annotation, *info.metadata] if info.metadata else info.annotation,
             bool(offered and offered.factories),
         )
     return (

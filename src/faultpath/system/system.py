@@ -117,7 +117,8 @@ class System(ABC):
     def run(self, variant: str, scenes: Sequence[str], taps: Taps, seed: int) -> Sequence[Outcome]:
         """Run one trial in each scene, in order; every reading goes through `taps`.
 
-        The taps are new and for these scenes. The caller fills in `faulted_steps` and
+        The taps are new and for these scenes. A loop that ends with the last of them tells
+        `taps.set_active` at each step which still run. The caller fills in `faulted_steps` and
         `altered_steps` from their delivery log.
         """
 

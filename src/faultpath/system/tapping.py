@@ -1,6 +1,6 @@
 """Taps on existing objects: their attributes, keys or arguments are delivered at each read."""
 
-from collections.abc import Callable, Generator, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping, MutableMapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import partial, wraps
@@ -45,16 +45,21 @@ class Reads:
                 f"object that keeps the copy, or let the function that makes it take {name} as an "
                 "argument"
             )
-        return self.inputs[self.ports[name]][self.row]
+        return self.inputs.row(self.ports[name], self.row)
+
+
+_MUTABLE: Any = MutableMapping
 
 
 class _Keys(dict[Any, Any]):
-    """A stand-in for a mapping. Its own `__iter__` keeps `dict(...)` from copying past the taps."""
+    """A stand-in for a mapping. Its own `__iter__` keeps `dict(...)` from copying past the taps,
+    and the methods of `MutableMapping` go through those below, which those of `dict` do not."""
 
     reads: Reads
 
     def __getitem__(self, key: Any) -> Any:
-        return self.reads.read(key) if key in self.reads.ports else super().__getitem__(key)
+        value = super().__getitem__(key)
+        return self.reads.read(key) if key in self.reads.ports else value
 
     def __setitem__(self, key: Any, value: Any) -> None:
         if key in self.reads.ports:
@@ -64,17 +69,13 @@ class _Keys(dict[Any, Any]):
     def __iter__(self) -> Iterator[Any]:
         return iter(list(super().keys()))
 
-    def get(self, key: Any, default: Any = None) -> Any:
-        try:
-            return self[key]
-        except KeyError:
-            return default
+    def __ior__(self, other: Any) -> Any:
+        self.update(other)
+        return self
 
-    def values(self) -> Any:
-        return [self[key] for key in self]
-
-    def items(self) -> Any:
-        return [(key, self[key]) for key in self]
+    get, items, values = _MUTABLE.get, _MUTABLE.items, _MUTABLE.values
+    pop, popitem = _MUTABLE.pop, _MUTABLE.popitem
+    setdefault, update = _MUTABLE.setdefault, _MUTABLE.update
 
 
 def tapped(what: T, *names: str, at: str, **channels: str) -> T:

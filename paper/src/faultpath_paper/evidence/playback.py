@@ -129,12 +129,14 @@ class WindowTaps:
         self.set_active = taps.set_active
         self._taps, self._exchange = taps, exchange
 
-    def deliver(self, channel: str, reader: str, reading: Reading, step: int) -> Any:
+    def deliver(
+        self, channel: str, reader: str, reading: Reading, step: int, scene: int | None = None
+    ) -> Any:
         """Return what a reader gets; over the history, most channels as they were recorded."""
         if step < HISTORY and channel not in HELD:
             return reading.value
         value = self._exchange(reading.value) if channel == CODE[0] else reading.value
-        delivered = self._taps.deliver(channel, reader, Reading(value, reading.source, 0), 0)
+        delivered = self._taps.deliver(channel, reader, Reading(value, reading.source, 0), 0, scene)
         self.delivered[channel, reader] = delivered
         return delivered
 

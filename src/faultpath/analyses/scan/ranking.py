@@ -242,14 +242,16 @@ class _Taps:
         self._first, self._records = first, records
         self.set_active = self._taps.set_active
 
-    def deliver(self, channel: str, reader: str, reading: Reading, step: int) -> Any:
+    def deliver(
+        self, channel: str, reader: str, reading: Reading, step: int, scene: int | None = None
+    ) -> Any:
         """Deliver as `Taps` does."""
         tap = (channel, reader)
         if tap in self._first.past:
             if self._records:
                 self._first.readings[tap] = reading
             reading = self._first.readings[tap]
-        return self._taps.deliver(channel, reader, reading, step)
+        return self._taps.deliver(channel, reader, reading, step, scene)
 
 
 def _with_plant(loop: Loop, plant: Plant) -> Loop:

@@ -22,6 +22,8 @@ from faultpath.run.findings import (
 )
 from faultpath.run.trials import HASHES
 
+_COUNTS = {"faulted_steps", "altered_steps"}
+
 
 def of_audit(result: AuditResult) -> tuple[str, ...]:
     """Return all that was found: what puts all of it in doubt first, then what is missing."""
@@ -117,12 +119,20 @@ def _recheck(finding: Recheck) -> str:
         if finding.why == "guarded"
         else f"without the other scenes of its block of {finding.unit_scenes}"
     )
-    return (
+    again = (
         f"Results do not repeat: a second run of {counted(len(finding.scenes), 'scene')} of "
-        f"{trials}, {how}, {finding.deviation}. Effects may be chance: look for random numbers "
-        "that are not of faultpath.generator, for threads, for what scenes of one call of run() "
-        "share or one call leaves for the next, and for what is written into an array after it was "
-        "delivered."
+        f"{trials}, {how}, {finding.deviation}."
+    )
+    other = finding.deviation
+    if other and other.gaps and not other.ended and {name for name, _ in other.gaps} <= _COUNTS:
+        return (
+            f"{again} Only what is counted differs: a loop that ends with the last of its scenes "
+            "tells which still run, with taps.set_active(running) at each step."
+        )
+    return (
+        f"{again} Effects may be chance: look for random numbers that are not of "
+        "faultpath.generator, for threads, for what scenes of one call of run() share or one call "
+        "leaves for the next, and for what is written into an array after it was delivered."
     )
 
 

@@ -160,9 +160,9 @@ def _reconstructed(system: System, reads: Sequence[Read]) -> dict[str, tuple[str
     for read in reads:
         readers.setdefault(module_of(read.reader), {})[read.channel] = None
     return {
-        source: (module, tuple(readers.get(module, ())))
+        source: (module, tuple(readers[module]))
         for module, source in system.interface.reconstructions
-        if source in sources
+        if source in sources and module in readers
     }
 
 
