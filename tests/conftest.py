@@ -1,5 +1,6 @@
 """Every run of the tests tries the same inputs; `make fuzz` explores with random ones."""
 
+import os
 import secrets
 import signal
 import sys
@@ -40,6 +41,14 @@ def pytest_configure(config: pytest.Config) -> None:
         config.pluginmanager.register(EngineAlone(), "engine-alone")
     elif find_spec("faultpath_quadrotor") and find_spec("torch"):
         import_module("faultpath_quadrotor")  # tells torch what to use, before a test computes
+
+
+@pytest.fixture(autouse=True, scope="session")
+def _flushed_later() -> Iterator[None]:
+    """Let the disk take files in its own time, for which runs of many small files would wait."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(os, "fsync", lambda descriptor: None)
+        yield
 
 
 @pytest.fixture(autouse=True)

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import yaml
 from judged_files import HEADER, Successes, inspect_log, lerobot, lm_eval, table
 from toy_audits import AUDIT, ROOT, TOY
 
@@ -180,102 +181,17 @@ def test_few_scenes_and_ties_claim_nothing(n: int, won: tuple[bool, bool], tmp_p
 
 
 ROW = "old,s0,0,,1,h\nnew,s0,0,,1,h\n"
-REFUSED: dict[str, tuple[str, dict[str, Any], str]] = {
-    "variant": (HEADER + ROW, {"repair": "newer"}, "unknown version 'newer'; did you mean 'new'?"),
-    "twice": (
-        HEADER + ROW + ROW,
-        {},
-        "all.csv, line 4 and .*all.csv, line 2 are the same trial .* as in --column condition=NAME",
-    ),
-    "twice under a condition": (
-        HEADER + (ROW + ROW).replace(",0,,", ",0,nominal,"),
-        {},
-        "are the same trial .* as in --column seed=NAME",
-    ),
-    "semicolons": (
-        (HEADER + ROW).replace(",", ";"),
-        {},
-        "all.csv, line 1: separates its columns by ';'; separate them by ','",
-    ),
-    "unpaired": (HEADER + ROW.replace("new,s0", "new,s1"), {}, "no trial of 'old' has its pair"),
-    "condition": (HEADER + ROW.replace(",0,,", ",0,fog,"), {}, r"no condition is nominal \(fog\)"),
-    "nominal": (HEADER + ROW, {"nominal": "fog"}, "no such condition: unknown condition 'fog'"),
-    "nominal, shared": (
-        HEADER + ROW + ROW.replace(",0,,", ",0,shared,"),
-        {"nominal": "shared", "shared": "shared"},
-        "'shared' is the nominal condition: name another with --shared",
-    ),
-    **{
-        f"no module, {name}": (
-            HEADER + ROW + ROW.replace(",0,,", f",0,{name},"),
-            {},
-            f"condition '{name}' does not name a module",
-        )
-        for name in ("isolated:", "isolated:shared", "as-run")
-    },
-    "none left": (
-        HEADER + ROW.replace(",,1,", ",,,"),
-        {},
-        r"such as that of new in s0 in these results \(the results give no outcome\): fix",
-    ),
-    "one variant": (
-        HEADER + ROW + "new,s0,0,shared,1,h\n",
-        {},
-        "'old' has no trial under the shared",
-    ),
-    "score": (HEADER + ROW.replace(",,1,", ",,0.5,"), {}, "line 2: success is 0.5: give 0 or 1"),
-    "lost": (HEADER + ROW.replace(",,1,", ",,1e-400,"), {}, "line 2: success is '1e-400'"),
-    "script": (HEADER + ROW.replace(",,1,", ",,١,"), {}, "line 2: success is '١': give true or"),
-    "too large": (
-        "variant,scene,success,seconds\nold,s0,1,1e308\n",
-        {"columns": {"time_s": "seconds"}},
-        r"line 2: seconds is '1e308': give a number from -1e\+300 to 1e\+300",
-    ),
-    "too large a metric": (
-        "variant,scene,success,reward\nold,s0,1,2\nnew,s0,1,-1e308\n",
-        {"metrics": "reward"},
-        "line 3: reward is '-1e308': give a number from",
-    ),
-    "word": (HEADER + ROW.replace(",,1,", ",,won,"), {}, "success is 'won': give true or false"),
-    "hashes": (HEADER + ROW.replace("h\nnew", "\nnew"), {}, "line 2 has no hash of its initial"),
-    "cells": (HEADER + "old,s0\n", {}, "all.csv, line 2: has 2 cells where the first line names 6"),
-    "column": (HEADER + ROW, {"columns": {"scene": "sccene"}}, "unknown column 'sccene'; did you"),
-    "no success": ("variant,scene\nold,s0\n", {}, "line 2 has no success: name the column"),
-    "other names": (
-        "policy,episode,ok\nold,s0,1\n",
-        {},
-        "line 2 has no variant, scene and success: name the columns with --column variant=NAME",
-    ),
-    "metric": (HEADER + ROW, {"metrics": "reward"}, "line 2: unknown metric 'reward'"),
-    "task": (HEADER + ROW, {"cluster": "task"}, "not every trial names its task"),
-    "models": (HEADER + ROW, {"generalise": "models"}, "newly trained models need 5 seeds"),
-    "models of tasks": (
-        "variant,scene,task,success\n"
-        + "".join(f"{v},s{n},t,1\n" for v in ("old", "new") for n in range(6)),
-        {"generalise": "models", "cluster": "task"},
-        "does not know which trainings there are: leave it or",
-    ),
-}
+MISTAKES = yaml.safe_load(Path(__file__).with_name("mistakes.yaml").read_text("utf-8"))["judge"]
 
 
-DAMAGED: dict[str, tuple[str, str]] = {
-    "a.txt": ("", "is of no kind that is read"),
-    "b.json": ('{"per_task": [{"task_id": 1}]}', r"per_task\[0\].task_group: is missing"),
-    "c.json": ("{}", "is neither LeRobot's eval_info.json"),
-    "a.jsonl": ('{"variant": 1}\n{', "a.jsonl, line 2: is not JSON"),
-    "a.parquet": ("PAR1", "a.parquet: cannot be read"),
-}
-CASES = {case: ("all.csv", *refused) for case, refused in REFUSED.items()}
-CASES |= {file: (file, text, {}, sentence) for file, (text, sentence) in DAMAGED.items()}
-
-
-@pytest.mark.parametrize(("name", "text", "more", "sentence"), CASES.values(), ids=CASES)
+@pytest.mark.parametrize(("question", "sentence"), MISTAKES)
 def test_what_cannot_be_judged_is_refused(
-    name: str, text: str, more: dict[str, Any], sentence: str, tmp_path: Path
+    question: dict[str, Any], sentence: str, tmp_path: Path
 ) -> None:
-    (tmp_path / name).write_text(text)
+    table = {"header": HEADER, "rows": ROW} | question
+    (file := tmp_path / "all.csv").write_text(f"{table.pop('header').strip()}\n{table.pop('rows')}")
     with pytest.raises(UserError, match=sentence):
-        judged(tmp_path / name, tmp_path / "run", **more)
+        judged(file, tmp_path / "run", **table)
     assert not (tmp_path / "run").exists()
 
 
@@ -326,20 +242,6 @@ def test_a_table_of_a_spreadsheet_may_begin_with_a_byte_order_mark(tmp_path: Pat
     assert one.effects == two.effects
 
 
-@pytest.mark.parametrize(
-    ("results", "folder", "sentence"),
-    [
-        (None, "run", "results: None is no path: give files or folders"),
-        ({"scene": [1]}, "run", "is no path"),
-        (b"all.csv", "run", "is no path"),
-        ("all.csv", 3, "folder: is 3, and must be a Path"),
-    ],
-)
-def test_what_is_no_path_is_refused(results: object, folder: Any, sentence: str) -> None:
-    with pytest.raises(UserError, match=sentence):
-        judged(results, folder)
-
-
 @pytest.mark.parametrize("stored", ["", "{}", '{"format": 2}'])
 def test_an_earlier_result_that_cannot_be_read_is_not_taken_for_none(
     stored: str, tmp_path: Path
@@ -350,14 +252,3 @@ def test_an_earlier_result_that_cannot_be_read_is_not_taken_for_none(
     with pytest.raises(UserError, match="is damaged or from another version"):
         judged(results, tmp_path / "run")
     assert (tmp_path / "run" / "record.json").read_text() == stored
-
-
-def test_other_results_may_be_judged_in_the_same_folder(tmp_path: Path) -> None:
-    for name, count in (("few.csv", 12), ("many.csv", 20)):
-        won = {"old": [n % 3 > 0 for n in range(count)], "new": [n % 2 > 0 for n in range(count)]}
-        results = table(tmp_path / name, {"nominal": won, "shared": won})
-        run = judged(results, tmp_path / "run")
-        opened = faultpath.open_run(tmp_path / "run")
-        assert opened.provenance == run.provenance
-        assert name in opened.provenance.command[0]
-        assert opened.record.scenes == count

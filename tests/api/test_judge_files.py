@@ -12,6 +12,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
+import yaml
 from judged_files import HEADER, inspect_log, samples
 
 import faultpath
@@ -69,53 +70,15 @@ def test_a_list_or_group_is_no_success(name: str, cell: object, tmp_path: Path) 
     assert "success is" in refused(f"{label}{path}", tmp_path)
 
 
-def scored(scores: object) -> dict[str, Any]:
-    about = {"task": "t", "model": "old"}
-    return {"eval": about, "samples": [{"id": 0, "scores": scores}]}
+MISTAKES = yaml.safe_load(Path(__file__).with_name("mistakes.yaml").read_text("utf-8"))["files"]
 
 
-def task(successes: object) -> dict[str, Any]:
-    metrics = {"successes": successes}
-    return {"per_task": [{"task_group": "g", "task_id": 0, "metrics": metrics}]}
-
-
-UNEVEN = {"successes": [1], "sum_rewards": [1, 2]}
-SUCCESSES = "per_task[0].metrics.successes: is "
-
-
-@pytest.mark.parametrize(
-    ("name", "content", "sentence"),
-    [
-        ("a.jsonl", {"variant": "old", "scene": ["x"], "success": 1}, "line 1: the scene is"),
-        (
-            "a.jsonl",
-            {"variant": "old", "scene": "x", "success": 1, "initial": []},
-            "the initial is",
-        ),
-        # Keys of a group and letters of a text could be gone through as a list's items are.
-        ("eval_info.json", task({"0": True, "1": False}), SUCCESSES),
-        ("eval_info.json", task("0101"), SUCCESSES),
-        ("eval_info.json", task(None), SUCCESSES),
-        ("eval_info.json", {"per_task": {}}, "per_task: is {}, and must be a list"),
-        ("eval_info.json", {"per_episode": [{"seed": 1}]}, "per_episode[0].episode_ix: is missing"),
-        (
-            "eval_info.json",
-            {"per_task": [{**task([1])["per_task"][0], "metrics": UNEVEN}]},
-            "per_task[0].metrics: holds lists of different lengths",
-        ),
-        (LM_EVAL, {"doc_id": 0}, "names no metric"),
-        (LM_EVAL, {"doc_id": 0, "metrics": {"a": 1}}, "line 1: metrics: is {'a': 1}, and must"),
-        ("log.json", scored([{"value": 1}]), "samples[0].scores: is [{'value': 1}], and must"),
-        ("log.json", scored("C"), "samples[0].scores: is 'C', and must"),
-        ("log.json", scored({"match": 1}), "samples[0].scores.match: is 1, and must"),
-        ("log.json", scored({"match": {}}), "samples[0].scores.match.value: is missing"),
-        ("log.json", {"eval": {"task": "t"}, "samples": []}, "eval.model: is missing"),
-    ],
-)
-def test_lists_groups_and_names_are_what_they_should_be(
+@pytest.mark.parametrize(("name", "content", "sentence"), MISTAKES)
+def test_a_damaged_file_is_one_sentence(
     name: str, content: object, sentence: str, tmp_path: Path
 ) -> None:
-    (tmp_path / name).write_text(json.dumps(content))
+    text = content if isinstance(content, str) else json.dumps(content)
+    (tmp_path / name).write_text(text)
     label = "old=" if name in ("eval_info.json", LM_EVAL) else ""
     assert sentence in refused(f"{label}{tmp_path / name}", tmp_path)
 
@@ -278,19 +241,3 @@ def test_names_that_are_no_text_are_a_damaged_table(tmp_path: Path) -> None:
 def test_what_is_no_path_is_refused(results: object, folder: Any, says: str) -> None:
     with pytest.raises(UserError, match=says):
         judged(results, Path(), folder=folder)
-
-
-DAMAGED: dict[str, tuple[str, bytes, str]] = {
-    "kind": ("a.txt", b"", "is of no kind that is read"),
-    "json": ("a.json", b'{"per_task": [{"task_id": 1}]}', r"per_task\[0\].task_group: is missing"),
-    "neither": ("a.json", b"{}", "is neither LeRobot's eval_info.json"),
-    "line": ("a.jsonl", b'{"variant": 1}\n{', "a.jsonl, line 2: is not JSON"),
-    "parquet": ("a.parquet", b"PAR1", "a.parquet: cannot be read"),
-}
-
-
-@pytest.mark.parametrize(("name", "data", "says"), DAMAGED.values(), ids=DAMAGED)
-def test_a_damaged_file_is_one_sentence(name: str, data: bytes, says: str, tmp_path: Path) -> None:
-    (tmp_path / name).write_bytes(data)
-    with pytest.raises(UserError, match=says):
-        judged(tmp_path / name, tmp_path)

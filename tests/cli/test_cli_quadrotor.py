@@ -2,7 +2,6 @@
 
 import json
 import re
-import shutil
 import warnings
 from pathlib import Path
 
@@ -16,6 +15,10 @@ from faultpath.api.runs import open_run
 from faultpath.core.errors import Notice
 
 PARTS = ROOT / "tests" / "quadrotor" / "own_parts.py"
+SHORT = """
+from faultpath_quadrotor.plant import module
+module.CONTROL_STEPS = 3  # in worker processes, as the tests have it in their own
+"""
 
 pytestmark = pytest.mark.filterwarnings(
     "ignore::faultpath_quadrotor.native.kernel_args.PortableNotice"
@@ -25,7 +28,7 @@ pytestmark = pytest.mark.filterwarnings(
 @pytest.fixture(autouse=True)
 def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "CONTROL_STEPS", 3)
-    shutil.copy(PARTS, tmp_path / "mine.py")
+    (tmp_path / "mine.py").write_text(PARTS.read_text() + SHORT)
     scenes = tuple(
         scene.model_copy(update={"library": "mine", "id": f"mine/{scene.index:03d}"})
         for scene in load_library("selection").scenes[:2]

@@ -1,40 +1,14 @@
 """Examples of learned world models: fitted in their quick form in an empty folder, and audited."""
 
-import subprocess
+import runpy
 import sys
 from pathlib import Path
 
 import pytest
 
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
-FIT_AND_AUDIT = """
-import runpy
-import sys
-from pathlib import Path
-
 import faultpath
 
-_, example, arguments, baseline, repair, fault, weights = sys.argv
-sys.path.insert(0, str(Path(example).parent))
-sys.argv = [example, *arguments.split()]
-runpy.run_path(example, run_name="__main__")
-run = faultpath.audit(
-    example,
-    baseline=baseline,
-    repair=repair,
-    fault=fault,
-    library="training",
-    scenes=2,
-    options={"weights": weights},
-    workers=0,
-    progress=False,
-)
-print([condition.name for condition in run.record.conditions])
-print("failed" in run.table().column("status").to_pylist() or bool(run.words.findings))
-print(sorted(name.rpartition("/")[2] for name in run.provenance.code.data))
-shipped = faultpath.load_system(example)
-print({len(shipped.modules(name, 0)) for name in shipped.variants})
-"""
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 RUNS = {
     "learned_pendulum.py": (
         "--windows 60 --epochs 1",
@@ -52,19 +26,43 @@ RUNS = {
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("without_pages")
 @pytest.mark.parametrize("example", RUNS)
-def test_its_fits_are_matched_and_audited(example: str, tmp_path: Path) -> None:
-    """One process for all of it: half of the time goes into loading torch and Gymnasium."""
+def test_its_fits_are_matched_and_audited(
+    example: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """In one scene: the trials of two beside each other are repeated from the stored runs."""
     pytest.importorskip("torch")
-    arguments, (*audited, weights), conditions, modules = RUNS[example]
-    code = [sys.executable, "-c", FIT_AND_AUDIT, str(EXAMPLES / example), arguments]
-    done = subprocess.run([*code, *audited, weights], cwd=tmp_path, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    fitted, *_, flown, wrong, data, shipped = done.stdout.splitlines()
+    arguments, (baseline, repair, fault, weights), conditions, modules = RUNS[example]
+    file = str(EXAMPLES / example)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(EXAMPLES)  # as Python does for a file that it runs
+    monkeypatch.setattr(sys, "argv", [file, *arguments.split()])
+    runpy.run_path(file, run_name="__main__")
+    fitted = capsys.readouterr().out
     assert "matched in all but the repair (uncertainty training: " in fitted
     assert "not matched" not in fitted
-    assert flown == str(["correct", *conditions, "shared"])
-    assert wrong == "False"
-    assert data == str(sorted(path.name for path in (tmp_path / weights).iterdir()))
-    assert len(data.split(",")) == 4
-    assert shipped == str({modules})
+    run = faultpath.audit(
+        file,
+        baseline=baseline,
+        repair=repair,
+        fault=fault,
+        library="training",
+        scenes=1,
+        options={"weights": weights},
+        workers=0,
+        signals=False,
+        progress=False,
+    )
+    assert [condition.name for condition in run.record.conditions] == [
+        *("correct", *conditions, "shared")
+    ]
+    assert (run.failed, run.words.findings) == (0, ())
+    data = {name.rpartition("/")[2] for name in run.provenance.code.data}
+    assert data == {path.name for path in Path(weights).iterdir()}
+    assert len(data) == 4
+    shipped = faultpath.load_system(file)
+    assert {len(shipped.modules(name, 0)) for name in shipped.variants} == {modules}

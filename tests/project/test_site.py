@@ -66,11 +66,25 @@ def test_the_start_names_every_page_and_the_guide_for_assistants_leads_to_pages(
     assert [to for to in guide if not (ROOT / to).is_file()] == []
 
 
+SHORT = """
+import faultpath
+def load_system(name, load=faultpath.load_system):
+    if name == "quadrotor":
+        import faultpath_quadrotor.plant.module as module
+        module.CONTROL_STEPS = 8
+    return load(name)
+faultpath.load_system = load_system
+"""
+"""What each notebook begins with here: a flight of a few steps shows as much as a whole one."""
+
+
 @pytest.mark.slow
 def test_the_site_builds_and_is_whole(tmp_path: Path) -> None:
     built = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-d", tmp_path / "trees"]
     site = tmp_path / "site"
     kept = {name: str(tmp_path / "jupyter") for name in ("IPYTHONDIR", "JUPYTER_RUNTIME_DIR")}
+    (startup := tmp_path / "jupyter" / "profile_default" / "startup").mkdir(parents=True)
+    (startup / "short.py").write_text(SHORT)
     done = subprocess.run(
         [*built, ROOT / "docs", site], capture_output=True, text=True, env={**os.environ, **kept}
     )

@@ -14,14 +14,18 @@ notes are about the past and are left alone.
 
 import doctest
 import re
+import runpy
 import shlex
 import sys
+import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from subprocess import CompletedProcess
 
 import pytest
 from cli_runs import faultpath
+
+from faultpath.run.work.executor import Here
 
 Run = Callable[..., CompletedProcess[str]]
 
@@ -92,7 +96,11 @@ def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(autouse=True)
 def _here(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Run all in this process: to start others takes longer than what most documents run."""
     monkeypatch.chdir(workspace)
+    monkeypatch.syspath_prepend(workspace)
+    monkeypatch.setattr("faultpath.api.systems.local", lambda workers: Here())
+    monkeypatch.delitem(sys.modules, "mine", raising=False)  # of another test: `init` refuses it
     for name, value in {"COLUMNS": "100", "NO_COLOR": "1", "TERM": "dumb"}.items():
         monkeypatch.setenv(name, value)
 
@@ -104,22 +112,21 @@ TEXTS = {path: path.read_text(encoding="utf-8") for path in DOCUMENTS}
     "document", [path for path in TEXTS if program(TEXTS[path])], ids=lambda path: path.name
 )
 def test_python_of_a_document_runs(document: Path, workspace: Path, run: Run) -> None:
+    """An error names the line of the document."""
     for line, _ in session(TEXTS[document]):
         if INIT.match(line):
             typed(line, run)
     script = workspace / f"{document.stem}_snippets.py"
     script.write_text(program(TEXTS[document]), encoding="utf-8")
-    done = run(str(script))
-    assert done.returncode == 0, f"{document.name}, at the line of the same number:\n{done.stderr}"
+    with warnings.catch_warnings():
+        warnings.simplefilter("default")
+        runpy.run_path(str(script), run_name="__main__")
 
 
 @pytest.mark.parametrize(
     "document", [path for path in TEXTS if commands(TEXTS[path])], ids=lambda path: path.name
 )
-def test_console_of_a_document_runs(
-    document: Path, run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.delitem(sys.modules, "mine", raising=False)  # of another test: `init` refuses it
+def test_console_of_a_document_runs(document: Path, run: Run) -> None:
     checker = doctest.OutputChecker()
     for line, output in commands(TEXTS[document]):
         brief = OF_ALL_SCENES.match(line) and not output.strip()

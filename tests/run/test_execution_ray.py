@@ -178,18 +178,19 @@ def test_a_node_with_another_system_is_named(hands, tmp_path, monkeypatch, optio
 
 
 @pytest.mark.parametrize(
-    ("does", "limit", "says"),
+    ("does", "scenes", "limit", "says"),
     [
-        ("die", {}, "the worker on node .* of the Ray cluster was lost"),
-        ("hang", {"time_limit_s": 8.0}, "it was stopped at the time limit of 8 s"),
+        ("die", ("s00", "s05"), {}, "the worker on node .* of the Ray cluster was lost"),
+        # Alone, since a busy machine may take seconds over any that has to end in time.
+        ("hang", ("s05",), {"time_limit_s": 0.5}, "it was stopped at the time limit of 0.5 s"),
     ],
 )
 def test_a_unit_that_is_its_workers_end_or_takes_too_much_loses_itself_alone(
-    hands, tmp_path, does, limit, says
+    hands, tmp_path, does, scenes, limit, says
 ):
     """One is killed in the moment in which its flight begins, each time."""
-    trials = plan_of(f"{UNRULY}:unruly", ("s00", "s05"), does=does, where="s05", dies="s05")
+    trials = plan_of(f"{UNRULY}:unruly", scenes, does=does, where="s05", dies="s05")
     found = run_plan(trials, tmp_path, executor=hands, recheck=False, **limit)
     (failure,) = found.failures
-    assert (failure.scene, found.blocks_computed) == ("s05", 2)
+    assert (failure.scene, found.blocks_computed) == ("s05", len(scenes))
     assert re.search(says, failure.error)

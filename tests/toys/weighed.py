@@ -122,7 +122,7 @@ class ToySystem(Weighed):
 class Golden(Weighed):
     """Depends on scene, seed, variant and fault, and fails where `fails` has VARIANT/SCENE/SEED."""
 
-    name, block_size, trained, traced = "golden", 8, True, False
+    name, block_size, trained, traced = "golden", 120, True, False
     steps, pull = 5, 0.5
     reads = says = {"once": 1, "twice": 2, "thrice": 3}  # noqa: RUF012 - never changed
 

@@ -103,8 +103,7 @@ def run_provenance(
     `names` are the files there that its pages are made from; their digests stand beside it. Of a
     run that other code had finished, the provenance stays.
     """
-    # Judged trials have no code either, and no block that was kept.
-    if result.blocks_kept and not result.code and (folder / PROVENANCE).exists():
+    if not result.code and (folder / PROVENANCE).exists():
         earlier = model_of(contents(folder / PROVENANCE, LARGEST_TEXT), RunProvenance)
         return amend(folder, earlier, names)
     package = Path(__file__).parents[1] / "__init__.py"
