@@ -1,6 +1,5 @@
 """Detected, families and reversals: interval, test and direction together."""
 
-from functools import partial
 from itertools import combinations
 from unittest.mock import patch
 
@@ -8,18 +7,16 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from paired import conditional_effect
 from scipy.stats import binomtest, ttest_1samp
 from statsmodels.stats.multitest import multipletests
 
 from faultpath.stats.contrast import Contrast, change
 from faultpath.stats.decisions import decide_family, turn, with_test
-from faultpath.stats.effects import mean_effect, success_effect, success_rate
+from faultpath.stats.effects import mean_effect, success_rate
 from faultpath.stats.estimate import PairedTest
 from faultpath.stats.power import fewest_scenes
 from faultpath.stats.resamples import Resamples
-
-conditional_effect = partial(success_effect, test="conditional")
-"""The paper's effect."""
 
 N = 40
 RESAMPLES = Resamples.draw("decisions", N, n_resamples=400)

@@ -1,23 +1,19 @@
 """The score interval: Tango's for one seed, its laws for several, and never a width of zero."""
 
-from functools import partial
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
+from paired import conditional_effect
 from scipy.optimize import brentq
 from scipy.stats import norm
 from statsmodels.stats.proportion import proportion_confint
 
 from faultpath.stats.contrast import change
-from faultpath.stats.effects import success_effect, success_rate
+from faultpath.stats.effects import success_rate
 from faultpath.stats.resamples import Resamples
 from faultpath.stats.score import SceneValues, reach, rejects
-
-conditional_effect = partial(success_effect, test="conditional")
-"""The paper's effect."""
 
 Z = float(norm.ppf(0.975))
 N = 30
