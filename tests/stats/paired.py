@@ -1,6 +1,8 @@
-"""Paired outcomes of two versions with known counts."""
+"""Paired outcomes of two versions with known counts, and Holm's procedure by its definition."""
 
+from collections.abc import Sequence
 from functools import partial
+from itertools import accumulate
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,3 +20,12 @@ def counted(wins: int, losses: int, n: int = 100, start: int = 0) -> tuple[Bools
     on."""
     scene = (np.arange(n) - start) % n
     return scene < wins, (scene >= wins) & (scene < wins + losses)
+
+
+def holm(p_values: Sequence[float]) -> list[float]:
+    """Return the p-values that Holm's procedure adjusts."""
+    order = np.argsort(p_values)
+    left = range(len(order), 0, -1)
+    steps = (min(1.0, count * p_values[place]) for count, place in zip(left, order, strict=True))
+    adjusted = dict(zip(order.tolist(), accumulate(steps, max), strict=True))
+    return [adjusted[place] for place in range(len(order))]
