@@ -1,10 +1,11 @@
 """Outcome tables with known counts, and the record that follows."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from math import comb
 from typing import Any
 
-from outcomes import trial
+from outcomes import outcome, trial
 
 from faultpath.analyses.decide import decide
 from faultpath.analyses.facts import ComparisonFacts, SceneOrder
@@ -121,13 +122,19 @@ def record(
     n: int = SCENES,
     altered: Mapping[str, int] = {},
     trained: bool = False,
+    fails: Callable[[Trial], bool] = lambda row: False,
     **asked: object,
 ) -> AuditResult:
-    """Return the record of such trials; `asked` changes the question."""
+    """Return the record of such trials, of which some fail; `asked` changes the question."""
     first = next(iter(cells.values()))
     seeds = range(len(first)) if isinstance(first, list) else (0,)
-    about = facts(n, seeds, trained=trained)
-    return decide(question(**asked), about, conditions(*cells), table(cells, n, **altered))
+    about, trials = facts(n, seeds, trained=trained), table(cells, n, **altered)
+    ended = Trials.of(failed(row) if fails(row) else row for row in trials)
+    return decide(question(**asked), about, conditions(*cells), ended)
+
+
+def failed(row: Trial) -> Trial:
+    return replace(row, outcome=outcome(row.scene_index, Status.FAILED, row.seed))
 
 
 def three(correct: Counts, isolated: Counts, shared: Counts, **changes: object) -> AuditResult:

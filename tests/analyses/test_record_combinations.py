@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator
+from functools import cache
 from itertools import product
 
 from outcome_tables import BASELINE, MOST_WORDS, REPAIR, record, sequential
@@ -17,13 +18,17 @@ OPEN, GAIN, LOSS = (0, ""), (1, ""), (-1, "")
 FLOOR, WON_AT_THE_FLOOR, IDLE, SMALL = (0, "floor"), (1, "floor"), (0, "idle"), (0, "small")
 PLAIN = (OPEN, GAIN, LOSS)
 SIDES = {REPAIR: 1, BASELINE: -1}
-FOUR = record(dict.fromkeys((CORRECT, "a", "b", SHARED), (50, 5, 5)))
+
+
+@cache
+def four() -> AuditResult:
+    return record(dict.fromkeys((CORRECT, "a", "b", SHARED), (50, 5, 5)))
 
 
 def made(states: dict[str, State], primary: str, turned: str = "") -> AuditResult:
     """Return a record with these decisions; at the module `turned` an interaction is detected."""
-    effects: list[Effect] = []
-    for effect in FOUR.effects:
+    undecided, effects = four(), list[Effect]()
+    for effect in undecided.effects:
         if effect.condition in states:
             sign, special = states[effect.condition]
             rates = (5.0, 6.0) if special == "floor" else (55.0, 55.0 + 20.0 * sign)
@@ -32,26 +37,26 @@ def made(states: dict[str, State], primary: str, turned: str = "") -> AuditResul
             effects.append(effect.model_copy(update=update))
     changes = [
         change.model_copy(update={"turn": turn(states, change.isolated, turned)})
-        for change in FOUR.changes
+        for change in undecided.changes
         if change.isolated in states
         and SHARED in states
         and IDLE not in (states[change.isolated], states[SHARED])
     ]
-    question = FOUR.question
-    facts = FOUR.facts.model_copy(update={"primary": primary, "trained": True})
+    question = undecided.question
+    facts = undecided.facts.model_copy(update={"primary": primary, "trained": True})
     small = tuple(condition for condition, state in states.items() if state == SMALL)
     if small:
         question = question.model_copy(update={"stop_when": "decided", "margin_pp": 5.0})
         facts = facts.model_copy(update={"order": sequential()})
     held = {"scenes": 100, "reached": True, "small": small}
     update = {
-        "conditions": tuple(of for of in FOUR.conditions if of.name in states),
-        "counts": tuple(of for of in FOUR.counts if of.condition in states),
+        "conditions": tuple(of for of in undecided.conditions if of.name in states),
+        "counts": tuple(of for of in undecided.counts if of.condition in states),
         "effects": tuple(effects),
         "changes": tuple(changes),
     }
     update |= {"question": question, "facts": facts}
-    partial = FOUR.model_copy(update=update | {"break_evens": ()})
+    partial = undecided.model_copy(update=update | {"break_evens": ()})
     if small:
         partial = AuditResult.model_validate(partial.model_dump() | {"stopped": held})
     return partial

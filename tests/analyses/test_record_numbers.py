@@ -1,26 +1,11 @@
 """From tables with known counts to exactly their numbers."""
 
 import pytest
-from outcome_tables import (
-    BASELINE,
-    REPAIR,
-    conditions,
-    exact_p,
-    facts,
-    question,
-    record,
-    rows,
-    table,
-    three,
-    variants,
-)
+from outcome_tables import BASELINE, REPAIR, exact_p, record, three
 
-from faultpath.analyses.decide import decide
 from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.core.errors import UserError
 from faultpath.report.sentences import words
-from faultpath.run.trials import Trials
-from faultpath.system import Status
 
 
 @pytest.mark.parametrize("counts", [(40, 20, 5), (60, 3, 15), (50, 0, 0), (0, 7, 7), (94, 6, 0)])
@@ -82,26 +67,13 @@ def test_too_few_scenes_decide_nothing_and_the_number_that_would_is_known(n, eno
     assert [change.turn for change in made.changes] == ["reversal" if enough else "none"] * 2
 
 
-def _with_failures(*failed: tuple[str, str, int]) -> Trials:
-    """Return trials under two conditions of which some failed: variant, condition, scene."""
-    out = []
-    for condition, counts in {CORRECT: (40, 20, 10), "observer": (20, 10, 30)}.items():
-        for variant, statuses in variants(counts).items():
-            for v, p, i in failed:
-                if (v, p) == (variant, condition):
-                    statuses[i] = Status.FAILED
-            out += rows(variant, condition, statuses)
-    return Trials.of(out)
+TWO = {CORRECT: (40, 20, 10), "observer": (20, 10, 30)}
 
 
 def test_a_failed_trial_costs_its_pair_and_shows_and_costs_other_conditions_nothing():
     # Scene 45 is won by the repair alone under correct inputs, and lost to the baseline otherwise.
-    made = decide(
-        question(),
-        facts(),
-        conditions(CORRECT, "observer"),
-        _with_failures((REPAIR, "observer", 45)),
-    )
+    fails = (REPAIR, "observer", 45)
+    made = record(TWO, fails=lambda row: (row.variant, row.condition, row.scene_index) == fails)
     correct, observer = made.effects
     assert (correct.void, observer.void) == (0, 1)
     assert (correct.scenes, observer.scenes, made.scenes) == (100, 99, 100)
@@ -116,17 +88,15 @@ def test_a_failed_trial_costs_its_pair_and_shows_and_costs_other_conditions_noth
 
 
 def test_a_condition_without_any_pair_costs_the_others_nothing_and_is_named():
-    every = tuple((REPAIR, "observer", i) for i in range(100))
-    made = decide(question(), facts(), conditions(CORRECT, "observer"), _with_failures(*every))
+    made = record(TWO, fails=lambda row: (row.variant, row.condition) == (REPAIR, "observer"))
     (correct,) = made.effects
     assert (correct.condition, correct.scenes, correct.void) == (CORRECT, 100, 0)
     assert not made.break_even
     said = "With the fault at the observer alone, no pair of trials is left to compare"
     assert words(made).headline.startswith(said)
     assert words(made).findings[0].startswith(said)
-    every += tuple((REPAIR, CORRECT, i) for i in range(100))
     with pytest.raises(UserError, match="no scene is left"):
-        decide(question(), facts(), conditions(CORRECT, "observer"), _with_failures(*every))
+        record(TWO, fails=lambda row: row.variant == REPAIR)
 
 
 def test_several_seeds_are_averaged_within_each_scene():
@@ -157,11 +127,8 @@ def test_floor_and_ceiling_are_both_variants_below_10_or_above_90(counts, extrem
 
 
 def test_a_condition_on_which_the_fault_never_acted_is_no_part_of_the_family():
-    out = []
-    for condition, counts in ((CORRECT, (50, 9, 1)), ("a", (40, 20, 2)), (SHARED, (40, 2, 20))):
-        for variant, statuses in variants(counts).items():
-            out += rows(variant, condition, statuses, altered=0 if condition == "a" else None)
-    made = decide(question(), facts(), conditions(CORRECT, "a", SHARED), Trials.of(out))
+    cells = {CORRECT: (50, 9, 1), "a": (40, 20, 2), SHARED: (40, 2, 20)}
+    made = record(cells, altered={"a": 0})
     idle = made.effects[1]
     assert not idle.acted
     assert not idle.significant
@@ -175,8 +142,6 @@ def test_the_primary_contrast_is_the_shared_condition_or_the_only_isolated_one_o
     level = (50, 5, 5)
     assert three(level, level, level).facts.primary == SHARED
     assert record({CORRECT: level, "observer": level}).facts.primary == "observer"
-    named = question(primary="observer")
-    cells = {CORRECT: level, "observer": level, SHARED: level}
-    assert decide(named, facts(), conditions(*cells), table(cells)).facts.primary == "observer"
+    assert three(level, level, level, primary="observer").facts.primary == "observer"
     with pytest.raises(UserError, match=r"no condition 'obs'.*has correct, observer, shared"):
-        decide(question(primary="obs"), facts(), conditions(*cells), table(cells))
+        three(level, level, level, primary="obs")

@@ -222,16 +222,6 @@ def test_trials_that_do_not_repeat_or_are_no_pairs_support_nothing(invalid):
     assert "succeeds more often" not in whole
 
 
-def test_a_headline_says_in_how_few_scenes_it_shows():
-    scene = np.arange(SCENES)
-    few = audit((ends(scene < 54), ends(scene < 50)))
-    more = audit((ends(scene < 60), ends(scene < 50)))
-    assert words(few).headline == (
-        "new is ahead of old under correct inputs (in 4 scenes, never the other way)."
-    )
-    assert "(" not in words(more).headline
-
-
 def mixed(stream: np.random.Generator) -> AuditResult:
     """Return a record of which the repair's trials that end badly without the fault fail."""
     scene = np.arange(SCENES)

@@ -2,7 +2,7 @@
 
 import pytest
 from outcome_tables import (
-    Counts,
+    REPAIR,
     conditions,
     facts,
     question,
@@ -11,7 +11,6 @@ from outcome_tables import (
     table,
     three,
 )
-from outcomes import trial
 
 from faultpath.analyses.decide import decide
 from faultpath.analyses.facts import EarlierAnalysis
@@ -20,8 +19,6 @@ from faultpath.core.errors import UserError
 from faultpath.report.sentences import words
 from faultpath.report.sentences.answers import answers
 from faultpath.report.sentences.phrases import ahead, change, estimand, in_short
-from faultpath.run.trials import Trials
-from faultpath.system import Status
 
 LEVEL, GAIN, LOSS = (50, 5, 5), (40, 30, 2), (40, 2, 30)
 TRAININGS = [(40, 30, 2), (42, 28, 3), (38, 31, 1), (39, 30, 2), (41, 29, 0)]
@@ -56,25 +53,11 @@ CASES = {
         {CORRECT: TRAININGS, "observer": TRAININGS}, trained=True, generalise="models"
     ),
     "seeds that change nothing": lambda: record({CORRECT: [GAIN] * 3, "observer": [LOSS] * 3}),
-    "every repair failed with the fault": lambda: failing("observer"),
+    "every repair failed with the fault": lambda: record(
+        {CORRECT: (40, 20, 10), "observer": (20, 10, 30)},
+        fails=lambda row: (row.variant, row.condition) == (REPAIR, "observer"),
+    ),
 }
-
-
-def failing(condition: str) -> AuditResult:
-    """Return a record of which every trial of the repair under a condition failed."""
-    cells = {CORRECT: (40, 20, 10), "observer": (20, 10, 30)}
-    return decide(question(), facts(), conditions(*cells), lost(cells, condition))
-
-
-def lost(cells: dict[str, Counts | list[Counts]], condition: str, seed: int = 0) -> Trials:
-    """Return trials of which all of the repair under a condition with a seed failed."""
-    at = ("new", condition, seed)
-    return Trials.of(
-        trial(*at[:2], row.scene_index, Status.FAILED, seed=seed, metrics={})
-        if (row.variant, row.condition, row.seed) == at
-        else row
-        for row in table(cells)
-    )
 
 
 def text_of(made: AuditResult) -> str:
@@ -133,7 +116,7 @@ def test_a_headline_counts_scenes_of_no_effect_that_it_does_not_name():
 
 def test_every_condition_is_not_said_where_one_has_no_pair():
     cells = dict.fromkeys((CORRECT, "a", SHARED), GAIN)
-    made = decide(question(), facts(), conditions(*cells), lost(cells, "a"))
+    made = record(cells, fails=lambda row: (row.variant, row.condition) == (REPAIR, "a"))
     assert words(made).headline == (
         "new is ahead of old under the shared fault and under correct inputs."
     )
@@ -214,9 +197,11 @@ def test_of_few_trainings_or_of_copies_nothing_is_said_of_new_ones(kept):
 def test_a_training_that_failed_throughout_under_one_condition_is_left_out_there(training):
     """It ended in a traceback: effects under two conditions had other numbers of trainings."""
     by_seed = [(40 - seed, 30 + seed, 2) for seed in range(6)]
-    cells = {CORRECT: by_seed, "observer": by_seed, SHARED: by_seed}
-    about = facts(100, range(6), trained=True)
-    trials = lost(cells, SHARED, training)
-    made = decide(question(generalise="models"), about, conditions(*cells), trials)
+    made = record(
+        {CORRECT: by_seed, "observer": by_seed, SHARED: by_seed},
+        trained=True,
+        fails=lambda row: (row.variant, row.condition, row.seed) == (REPAIR, SHARED, training),
+        generalise="models",
+    )
     assert [len(effect.per_seed) for effect in made.effects] == [6, 6, 5]
     assert len(made.changes[0].per_seed) == 5

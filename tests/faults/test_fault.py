@@ -73,14 +73,8 @@ def test_a_fault_that_cannot_act_is_a_users_mistake(faults: list[Fault], sentenc
         resolve(faults, INTERFACE)
 
 
-def test_a_window_begins_ends_and_recovers() -> None:
-    def weights(fault: Fault, steps: int) -> list[float]:
-        return [fault.weight(step) for step in range(steps)]
-
-    fault = Fault(channel="mass", intervention=kinds.Freeze(), onset_step=2)
-    assert weights(fault, 5) == [0, 0, 1, 1, 1]
-    fault = fault.model_copy(update={"duration_steps": 2})
-    assert weights(fault, 6) == [0, 0, 1, 1, 0, 0]
-    fault = fault.model_copy(update={"recovery_steps": 3})
-    assert weights(fault, 8) == [0, 0, 1, 1, 0.75, 0.5, 0.25, 0]
+def test_a_fault_is_over_once_it_has_recovered() -> None:
+    window = {"onset_step": 2, "duration_steps": 2, "recovery_steps": 3}
+    fault = Fault(channel="mass", intervention=kinds.Freeze()).model_copy(update=window)
     assert [fault.over(step) for step in (6, 7)] == [False, True]
+    assert [fault.weight(step) for step in (5, 6, 7)] == [0.5, 0.25, 0]

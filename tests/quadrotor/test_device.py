@@ -16,7 +16,7 @@ from faultpath_quadrotor import models, native, system
 from faultpath_quadrotor.options import QuadrotorOptions
 from faultpath_quadrotor.plant.module import ACTION
 from faultpath_quadrotor.system import Quadrotor
-from flights import HELD_OUT, STEPS, fault, fly, quadrotor, trace
+from flights import HELD_OUT, fault, fly, quadrotor, trace
 from simulated_gpu import GPU, SimulatedGPU, simulated_gpu
 
 from faultpath.core import arrays
@@ -100,8 +100,8 @@ def test_control_steps_stay_on_the_device_and_never_wait(options, variant, texts
 
 def test_learned_modules_fly_the_same_to_rounding_the_way_of_a_device(monkeypatch):
     """The way of an accelerator, while tensors are on the CPU."""
-    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", STEPS)
-    monkeypatch.setattr("faultpath_quadrotor.plant.module.LOOK_EVERY", 5)
+    monkeypatch.setattr("faultpath_quadrotor.plant.module.CONTROL_STEPS", 5)
+    monkeypatch.setattr("faultpath_quadrotor.plant.module.LOOK_EVERY", 2)
     with native.using(native.PORTABLE):
         flyer = quadrotor(**LEARNED)
         noise = fault("attitude:noise=0.05", flyer)

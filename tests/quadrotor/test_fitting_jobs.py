@@ -78,7 +78,7 @@ def test_worker_processes_give_the_same_bits_and_fail_alone(tmp_path: Path) -> N
 
 
 def test_ctrl_c_ends_the_workers_and_keeps_their_epochs(tmp_path, monkeypatch):
-    gate = tmp_path / "data" / "gate"  # makes the toy slow and long while it exists
+    gate = tmp_path / "data" / "gate"
     gate.parent.mkdir()
     gate.touch()
     journal = journal_path(tmp_path / "out" / "slow-0.safetensors")
@@ -97,6 +97,7 @@ def test_ctrl_c_ends_the_workers_and_keeps_their_epochs(tmp_path, monkeypatch):
     with pytest.raises(Stopped, match="with 0 of 1 models finished"):
         _run(tmp_path, [FitJob(entry("slow"), 0)], 1, stop)
     assert [process.returncode for process in processes] == [-signal.SIGKILL]
+    gate.unlink()
     _run(tmp_path, [FitJob(entry("slow"), 0)])
     task = Toy(epochs=30)
     task.name = "slow"

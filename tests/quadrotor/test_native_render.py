@@ -13,7 +13,6 @@ from faultpath_quadrotor.scenes.scene import Scene
 from faultpath_quadrotor.state import State
 from test_perception_render import flown
 
-SCENES = [*load_library("selection").scenes[:40], *load_library("training").scenes[:40]]
 ROUNDING_M = 1e-6
 
 
@@ -30,11 +29,12 @@ def drawn(isa: str, scenes: list[Scene], state: State) -> torch.Tensor:
 
 @pytest.mark.parametrize("level", [True, False])
 def test_images_are_those_of_the_portable_path_silhouettes_included(isa, level):
-    state = flown(SCENES, seed=1)
+    scenes = [s for name in ("selection", "training") for s in load_library(name).scenes[:40]]
+    state = flown(scenes, seed=1)
     if level:
         state = replace(state, rotation=mounted(state.rotation))
-    ours, theirs = (drawn(name, SCENES, state) for name in (isa, native.PORTABLE))
-    assert ours.shape == (len(SCENES), HEIGHT, WIDTH)
+    ours, theirs = (drawn(name, scenes, state) for name in (isa, native.PORTABLE))
+    assert ours.shape == (len(scenes), HEIGHT, WIDTH)
     torch.testing.assert_close(ours, theirs, rtol=0, atol=ROUNDING_M)
     least = 0.999 if roots_are_exact() else 0.99
     assert (ours == theirs).float().mean() > least, "roots alone may differ in their last bit"

@@ -1,6 +1,7 @@
 """What a recorded flight of the quadrotor says, and that its errors are the paper's."""
 
 import numpy as np
+import pytest
 from flights import fault
 
 from faultpath.faults import at_readers
@@ -11,9 +12,10 @@ from faultpath.run.plan import SystemSpec, Treatment
 from faultpath.run.registry import load_system
 from faultpath.run.store.signals import TOGETHER
 
-SCENE = ("selection/003",)
+SCENE, STEPS = ("selection/003",), 60
 
 
+@pytest.mark.usefixtures("short")
 def test_a_recorded_flight_is_the_flight_and_tells_why_errors_cancel() -> None:
     system = load_system(SystemSpec(name="quadrotor", options={"clearance": "true", "wind": "L3"}))
     wrong = fault("calibration=+0.1", system)

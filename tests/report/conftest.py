@@ -8,6 +8,7 @@ import os
 import shutil
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from functools import cache
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -120,6 +121,7 @@ def _lose(row: Trial) -> Trial:
     return replace(row, outcome=replace(row.outcome, status=Status.FAILED, error="no number"))
 
 
+@cache
 def interface() -> Interface:
     return read_interface(INTERFACE)
 
@@ -254,6 +256,7 @@ def _track(index: int, status: Status, rng: np.random.Generator) -> np.ndarray:
     return track.astype(np.float32)
 
 
+@cache
 def _plan(index: int) -> FloorPlan:
     rng = np.random.default_rng([7, index])
     crates: list[Prism] = []

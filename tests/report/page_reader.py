@@ -7,10 +7,13 @@ from base64 import b64decode
 from collections.abc import Callable
 from dataclasses import replace
 from html.parser import HTMLParser
+from io import StringIO
 from typing import Any
 
 import numpy as np
+from rich.console import Console, RenderableType
 
+from faultpath.report.inputs import ReportInput
 from faultpath.run.store.tables import Trace
 from faultpath.run.trials import Trial, Trials
 
@@ -53,6 +56,25 @@ class Page(HTMLParser):
     @property
     def ids(self) -> list[str]:
         return [a["id"] for _, a in self.tags if a.get("id")]
+
+
+def printed(shown: RenderableType, width: int = 160) -> str:
+    """Return what a terminal of this width shows."""
+    text = StringIO()
+    Console(file=text, width=width, force_terminal=False).print(shown)
+    return text.getvalue()
+
+
+def with_record(source: ReportInput, **changed: object) -> ReportInput:
+    return replace(source, record=source.record.model_copy(update=changed))
+
+
+def with_facts(source: ReportInput, **changed: object) -> ReportInput:
+    return with_record(source, facts=source.record.facts.model_copy(update=changed))
+
+
+def with_system(source: ReportInput, **changed: object) -> ReportInput:
+    return replace(source, system=source.system.model_copy(update=changed))
 
 
 def unpack(packed: str) -> tuple[dict[str, Any], list[np.ndarray]]:

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from page_reader import with_record
 from playwright.sync_api import Browser, expect
 
 from faultpath.analyses.pairs import choose, read_pairs
@@ -56,9 +57,8 @@ def test_the_first_scene_shows_both_errors_and_their_sum_on_every_condition(hear
     assert first.count('class="term both') == 6
     assert f"{TOPIC.capitalize()}, believed minus true" in first
     quiet = tuple(e.model_copy(update={"sign": 0}) for e in heard.record.effects)
-    null = replace(heard, record=heard.record.model_copy(update={"effects": quiet}))
     assert 'id="why"' in page
-    assert 'id="why"' not in report_page(null), "nothing is to be explained"
+    assert 'id="why"' not in report_page(with_record(heard, effects=quiet)), "nothing to explain"
 
 
 @pytest.mark.browser

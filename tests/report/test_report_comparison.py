@@ -3,12 +3,11 @@
 import re
 from collections.abc import Callable
 from dataclasses import replace
-from io import StringIO
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from rich.console import Console
+from page_reader import printed, with_record
 
 from faultpath.analyses.effects import Missing
 from faultpath.analyses.facts import ComparisonFacts
@@ -30,8 +29,8 @@ def run(source: ReportInput, number: int, folder: str = "", **asked: object) -> 
     told = {name: asked.pop(name) for name in {*asked} & {*ComparisonFacts.model_fields}}
     question = record.question.model_copy(update=asked)
     facts = record.facts.model_copy(update=told)
-    record = record.model_copy(update={"question": question, "facts": facts})
-    return Compared(number, folder or f"runs/{number}", replace(source, record=record))
+    source = with_record(source, question=question, facts=facts)
+    return Compared(number, folder or f"runs/{number}", source)
 
 
 def signed(one: Compared, condition: str, sign: int, **more: object) -> Compared:
@@ -45,8 +44,7 @@ def signed(one: Compared, condition: str, sign: int, **more: object) -> Compared
 
 def decided(one: Compared, **changed: object) -> Compared:
     """Return the run with another record."""
-    record = one.record.model_copy(update=changed)
-    return replace(one, source=replace(one.source, record=record))
+    return replace(one, source=with_record(one.source, **changed))
 
 
 def sizes_of(one_seed: ReportInput, last_p: float) -> Given:
@@ -152,9 +150,7 @@ def test_sizes_of_one_fault_are_drawn_over_the_size(
 def test_long_names_leave_numbers_whole_on_a_terminal(one_seed: ReportInput, width: int) -> None:
     long = "runs/mine.py_create-blind-vs-calibrated-gain_scale=0.6-held-out-100-scenes-4c1f"
     runs = tuple(run(one_seed, number, f"{long}{number}") for number in (1, 2))
-    printed = StringIO()
-    Console(width=width, file=printed).print(shown(runs))
-    table = printed.getvalue().partition("bold is significant")[2]
+    table = printed(shown(runs), width).partition("bold is significant")[2]
     assert "1  mine.py_create-" in table
     for row in effects(runs).lines:
         for entry in row.entries[:2]:

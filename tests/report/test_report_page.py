@@ -6,7 +6,7 @@ from collections.abc import Callable
 from itertools import pairwise
 
 import pytest
-from page_reader import Page, unpack
+from page_reader import Page, unpack, with_record
 
 import faultpath.analyses.pairs as page_pairs
 from faultpath.analyses.pairs import PairKind, read_pairs
@@ -131,7 +131,5 @@ def test_every_test_has_a_sentence(source: ReportInput) -> None:
     ]
     effect = source.record.effects[0]
     for name in names:
-        record = source.record.model_copy(
-            update={"effects": (effect.model_copy(update={"test": name}),)}
-        )
-        assert f"{capital(name)}: " in phrases.tests(record)
+        tested = with_record(source, effects=(effect.model_copy(update={"test": name}),))
+        assert f"{capital(name)}: " in phrases.tests(tested.record)

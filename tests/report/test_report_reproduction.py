@@ -6,9 +6,8 @@ import pytest
 from faultpath_paper.report import words
 from faultpath_paper.report.page import reproduction_page, sweep_plot
 from faultpath_paper.report.terminal import ledger_markdown, ledger_view
-from page_reader import Page
+from page_reader import Page, printed
 from reproduction_toys import NASTY, ledger, reproduction, sweep, tables
-from rich.console import Console
 
 from faultpath.report.inputs import ReportInput
 from faultpath.report.tables import Entry, Line, Table
@@ -62,14 +61,12 @@ def test_sweep_draws_every_point_and_band() -> None:
 
 
 def test_terminal_and_markdown_cut_nothing_of_a_claim() -> None:
-    console = Console(width=72)
-    with console.capture() as captured:
-        console.print(ledger_view(ledger(), "paper"))
-    lines = captured.get().splitlines()
+    text = printed(ledger_view(ledger(), "paper"), 72)
+    lines = text.splitlines()
     for claim in ledger().claims:
         (line,) = (line for line in lines if line.startswith(claim.id))
         assert line.split()[2] == words.SHOWN[claim.verdict]
-        assert words.typeset(claim.claim) in " ".join(captured.get().split())
+        assert words.typeset(claim.claim) in " ".join(text.split())
     rows = [r for r in ledger_markdown(ledger(), "paper").splitlines() if r.startswith("|")]
     assert len(rows) == 2 + len(ledger().claims)
     assert len({len(re.findall(r"(?<!\\)\|", row)) for row in rows}) == 1
@@ -78,12 +75,10 @@ def test_terminal_and_markdown_cut_nothing_of_a_claim() -> None:
 
 def test_a_quick_run_decides_nothing_and_says_where_verdicts_stand() -> None:
     quick = reproduction().model_copy(update={"profile": "quick"})
-    console = Console(width=200)
-    with console.capture() as captured:
-        console.print(ledger_view(ledger(), "quick"))
+    text = printed(ledger_view(ledger(), "quick"), 200)
     page = Page(reproduction_page(quick, None, None)).text
-    for said in (captured.get(), ledger_markdown(ledger(), "quick"), page):
+    for said in (text, ledger_markdown(ledger(), "quick"), page):
         assert "tests the pipeline" in said
         assert not re.search(r"confirm \d|refute \d|\d confirmed, ✕", said)
-    for said in (captured.get(), page):
+    for said in (text, page):
         assert "docs/reproduction.md" in said

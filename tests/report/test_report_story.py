@@ -2,9 +2,9 @@
 
 import re
 from collections.abc import Callable
-from dataclasses import replace
 
 import pytest
+from page_reader import with_facts, with_record, with_system
 
 from faultpath.analyses.model import Condition
 from faultpath.faults import Fault, Scale
@@ -28,8 +28,7 @@ def states(fork: Fork) -> list[list[str]]:
 
 
 def with_conditions(source: ReportInput, change: Callable[[Condition], Condition]) -> ReportInput:
-    conditions = tuple(map(change, source.record.conditions))
-    return replace(source, record=source.record.model_copy(update={"conditions": conditions}))
+    return with_record(source, conditions=tuple(map(change, source.record.conditions)))
 
 
 def test_each_condition_shows_who_gets_the_fault(one_seed: ReportInput) -> None:
@@ -46,9 +45,7 @@ def test_each_condition_shows_who_gets_the_fault(one_seed: ReportInput) -> None:
 @pytest.mark.parametrize("readers", [("*",), ("predictor.trim",)])
 def test_the_fault_is_in_words_whoever_gets_it(one_seed: ReportInput, readers) -> None:
     fault = Fault(channel="mass", readers=readers, intervention=Scale(factor=0.6))
-    facts = one_seed.record.facts.model_copy(update={"faults": (fault,)})
-    record = one_seed.record.model_copy(update={"facts": facts})
-    assert "mass scaled by 0.6</" in report_page(replace(one_seed, record=record))
+    assert "mass scaled by 0.6</" in report_page(with_facts(one_seed, faults=(fault,)))
 
 
 SCREENS = {
@@ -78,8 +75,7 @@ def test_each_number_stands_once_on_the_first_screen(one_seed: ReportInput) -> N
 def test_a_module_that_does_not_read_the_fault_is_grey_and_says_why(one_seed: ReportInput) -> None:
     baseline, repair = one_seed.system.variants
     kept = tuple(name for name in repair.readers if name != "reconstruction.head")
-    variants = (baseline, repair.model_copy(update={"readers": kept}))
-    blind = replace(one_seed, system=one_seed.system.model_copy(update={"variants": variants}))
+    blind = with_system(one_seed, variants=(baseline, repair.model_copy(update={"readers": kept})))
 
     def untouched(condition: Condition) -> Condition:
         update = {

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from page_reader import with_record
 
 from faultpath.analyses.family import contrasts_of
 from faultpath.analyses.model import CORRECT
@@ -25,9 +26,8 @@ def drawn(source: ReportInput, rng: np.random.Generator, sizes: int) -> list[Com
             changed = {"p_value": p, "corrected_p": own, "sign": sign}
             told.append(effect.model_copy(update=changed))
         question = source.record.question.model_copy(update={"fault": f"calibration={number}"})
-        changed = {"effects": tuple(told), "question": question}
-        record = source.record.model_copy(update=changed)
-        runs.append(Compared(number, f"runs/{number}", replace(source, record=record)))
+        sized = with_record(source, effects=tuple(told), question=question)
+        runs.append(Compared(number, f"runs/{number}", sized))
     return runs
 
 
@@ -53,8 +53,7 @@ def test_correct_inputs_that_are_the_same_trials_count_once(one_seed: ReportInpu
             each.model_copy(update={"p_value": lowest} if each.condition == CORRECT else {})
             for each in run.record.effects
         )
-        record = run.record.model_copy(update={"effects": told})
-        return replace(run, source=replace(run.source, record=record))
+        return replace(run, source=with_record(run.source, effects=told))
 
     first = together([low(run) for run in runs])[0].family
     assert first is not None

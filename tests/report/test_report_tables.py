@@ -1,11 +1,9 @@
 """Markdown and terminal tables: escaped, complete, and with the record's numbers."""
 
-import io
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from rich.console import Console
+from page_reader import printed, with_facts, with_record
 
 from faultpath.analyses.facts import EarlierAnalysis
 from faultpath.analyses.model import AuditResult
@@ -25,42 +23,38 @@ def test_markdown_is_what_was_approved(name: str, request, approved) -> None:
 
 @pytest.mark.parametrize("details", [False, True])
 def test_the_terminal_shows_what_was_approved(one_seed: ReportInput, details, approved) -> None:
-    console = Console(file=io.StringIO(), width=120, force_terminal=False)
-    console.print(decision(one_seed.record, details=details))
-    lines = (line.rstrip() for line in console.file.getvalue().splitlines())  # type: ignore[attr-defined] - a StringIO
+    text = printed(decision(one_seed.record, details=details), 120)
+    lines = (line.rstrip() for line in text.splitlines())
     approved(f"terminal{', details' * details}", "\n".join(lines))
 
 
 def test_times_that_no_trial_has_are_one_sentence_and_no_column(one_seed: ReportInput) -> None:
     counts = [c.model_copy(update={"median_time_s": None}) for c in one_seed.record.counts]
-    record = one_seed.record.model_copy(update={"counts": tuple(counts)})
-    page = report_page(replace(one_seed, record=record))
+    page = report_page(with_record(one_seed, counts=tuple(counts)))
     assert "No time of a success is known." in page
     assert "edian time of successes" not in page
 
 
 def test_findings_stand_below_the_headline_doubts_first(one_seed: ReportInput) -> None:
-    earlier = EarlierAnalysis(scenes=20, primary="shared")
-    record = one_seed.record.model_copy(update={"earlier": (earlier,)})
-    console = Console(width=160)
-    with console.capture() as captured:
-        console.print(decision(record))
-    page = report_page(replace(one_seed, record=record))
-    for text in (captured.get(), page[page.index("<h1") :]):
+    source = with_record(one_seed, earlier=(EarlierAnalysis(scenes=20, primary="shared"),))
+    page = report_page(source)
+    for text in (printed(decision(source.record)), page[page.index("<h1") :]):
         marks = ("Do not choose", "Found in the run", "concluded before", "1 trial of", "80.0")
         assert list(map(text.index, marks)) == sorted(map(text.index, marks))
 
 
+def undetected(source: ReportInput) -> AuditResult:
+    """Return the record as if its last effect, whose interval leaves out 0, was not detected."""
+    *others, last = source.record.effects
+    last = last.model_copy(update={"sign": 0, "corrected_p": 0.25})
+    return with_record(source, effects=(*others, last)).record
+
+
 def test_details_say_everything_once(one_seed: ReportInput) -> None:
-    undetected = one_seed.record.effects[-1].model_copy(update={"sign": 0, "corrected_p": 0.25})
-    effects = (*one_seed.record.effects[:-1], undetected)
-    record = one_seed.record.model_copy(update={"effects": effects})
-    console = Console(width=400)
-    with console.capture() as captured:
-        console.print(decision(record, details=True))
-    said = [line.strip() for line in captured.get().splitlines() if len(line.split()) > 9]
+    text = printed(decision(undetected(one_seed), details=True), 400)
+    said = [line.strip() for line in text.splitlines() if len(line.split()) > 9]
     assert len(said) == len(set(said))
-    assert captured.get().count("the interval excludes 0, but") == 1
+    assert text.count("the interval excludes 0, but") == 1
 
 
 @pytest.mark.parametrize(
@@ -73,26 +67,21 @@ def test_details_say_everything_once(one_seed: ReportInput) -> None:
 )
 def test_what_a_fault_adds_has_the_unit_of_its_channel(one_seed: ReportInput, fault, words) -> None:
     read = parse_fault(fault, one_seed.system.interface, {}, 0.05)
-    facts = one_seed.record.facts.model_copy(update={"faults": read})
-    assert faults(facts) == words.removesuffix(" (kg)")
-    source = replace(one_seed, record=one_seed.record.model_copy(update={"facts": facts}))
+    source = with_facts(one_seed, faults=read)
+    assert faults(source.record.facts) == words.removesuffix(" (kg)")
     assert f"<dd>{words}</dd>" in report_page(source)
 
 
 def test_results_of_other_tools_show_no_seed_that_they_do_not_name(one_seed: ReportInput) -> None:
-    facts = one_seed.record.facts.model_copy(update={"pairing": "keys"})
     for seeds, text in (((0,), ""), ((0, 1), ", seeds 0, 1"), ((3,), ", seed 3")):
-        assert seeds_run(facts.model_copy(update={"seeds": seeds})) == text
+        assert seeds_run(with_facts(one_seed, pairing="keys", seeds=seeds).record.facts) == text
     assert seeds_run(one_seed.record.facts) == ", seed 0"
 
 
 def test_the_terminal_takes_names_literally(one_seed: ReportInput) -> None:
-    record = one_seed.record
-    conditions = (c.model_copy(update={"title": "[red]Shared[/]"}) for c in record.conditions)
-    console = Console(width=160)
-    with console.capture() as captured:
-        console.print(decision(record.model_copy(update={"conditions": tuple(conditions)})))
-    assert "[red]Shared[/]" in captured.get()
+    title = {"title": "[red]Shared[/]"}
+    conditions = tuple(c.model_copy(update=title) for c in one_seed.record.conditions)
+    assert title["title"] in printed(decision(with_record(one_seed, conditions=conditions).record))
 
 
 RECORDS = sorted((Path(__file__).parents[2] / "docs" / "reference").glob("*/record.json"))
@@ -100,11 +89,8 @@ RECORDS = sorted((Path(__file__).parents[2] / "docs" / "reference").glob("*/reco
 
 @pytest.mark.parametrize("path", RECORDS, ids=lambda path: path.parent.name)
 def test_a_narrow_terminal_cuts_no_number(path: Path) -> None:
-    console = Console(width=80)
     record = AuditResult.model_validate_json(path.read_bytes())
-    with console.capture() as captured:
-        console.print(decision(record))
-    text = captured.get()
+    text = printed(decision(record), 80)
     for row in by_condition(record, ("break-even", "interval", "won"), "").lines:
         assert all(entry.text in text for entry in row.entries), text
 
@@ -129,9 +115,7 @@ def test_report_is_written_whole(one_seed: ReportInput, tmp_path: Path) -> None:
 
 
 def test_an_interval_that_leaves_out_0_undetected_has_its_p(one_seed: ReportInput) -> None:
-    record, left_out = one_seed.record, "the interval excludes 0"
-    undetected = record.effects[-1].model_copy(update={"sign": 0, "corrected_p": 0.25})
-    changed = record.model_copy(update={"effects": (*record.effects[:-1], undetected)})
-    assert "0.250" in version_ahead(changed, undetected).aside
+    changed, left_out = undetected(one_seed), "the interval excludes 0"
+    assert "0.250" in version_ahead(changed, changed.effects[-1]).aside
     assert left_out in markdown_table(changed)
-    assert left_out not in markdown_table(record)
+    assert left_out not in markdown_table(one_seed.record)

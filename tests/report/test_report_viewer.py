@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from page_reader import unpack, with_traces
+from page_reader import unpack, with_system, with_traces
 
 from faultpath.analyses.pairs import read_pairs
 from faultpath.interface import Provenance
@@ -52,9 +52,8 @@ def test_numbers_come_out_of_a_page_as_they_went_in() -> None:
 
 def test_a_player_with_nothing_to_play_is_not_shown(one_seed: ReportInput) -> None:
     """Without positions only scenes of which signals were recorded can be played."""
-    system = one_seed.system.model_copy(update={"plans": {}})
     bare = with_traces(one_seed.trials, lambda track: None)
-    still = replace(one_seed, trials=bare, system=system)
+    still = replace(with_system(one_seed, plans={}), trials=bare)
     page = report_page(still)
     assert 'id="flights"' not in page
     assert 'href="#scene=' not in page
@@ -86,8 +85,7 @@ def test_without_positions_the_player_opens_on_what_the_plant_measures(
     interface = one_seed.system.interface.model_copy(update={"sources": sources})
     scene = next(iter(one_seed.system.plans))
     still = replace(
-        one_seed,
-        system=one_seed.system.model_copy(update={"interface": interface, "plans": {}}),
+        with_system(one_seed, interface=interface, plans={}),
         trials=with_traces(one_seed.trials, lambda track: None),
         signals={TrialAddress("gru", "shared", 0, scene): signals},
     )
@@ -151,7 +149,7 @@ def test_the_player_says_where_recorded_trials_part(one_seed: ReportInput) -> No
 
 def test_the_player_names_only_what_is_drawn(one_seed: ReportInput) -> None:
     drawn = "From above, to scale: the dot is the start, the ring the goal."
-    bare = replace(one_seed, system=one_seed.system.model_copy(update={"plans": {}}))
+    bare = with_system(one_seed, plans={})
     assert drawn in report_page(one_seed)
     assert drawn not in report_page(bare)
     assert "Positions to scale" in report_page(bare)

@@ -1,9 +1,7 @@
 """One table in three renderers: each shows every text literally and marks what is marked."""
 
-import io
-
 import pytest
-from rich.console import Console
+from page_reader import printed
 
 from faultpath.report.tables import Entry, Line, Table, html, line, markdown_block, markdown_grid
 from faultpath.report.terminal import drawn
@@ -24,9 +22,7 @@ STRANGE = r"100% of a_b & c#d {$x^2$} ~ \end{tabular} <b> [1] | *"
 
 
 def _terminal(table: Table, width: int = 100, **how: bool) -> str:
-    console = Console(file=io.StringIO(), width=width, force_terminal=False)
-    console.print(drawn(table, **how))
-    return console.file.getvalue()  # type: ignore[attr-defined] - a StringIO
+    return printed(drawn(table, **how), width)
 
 
 RENDERERS = {"markdown": markdown_grid, "html": html, "terminal": _terminal}

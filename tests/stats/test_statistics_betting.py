@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from paired import counted
 
 from faultpath.core.streams import generator
 from faultpath.stats.betting import log_capital
@@ -16,11 +17,6 @@ from faultpath.stats.effects import success_effect
 
 def effect(first, second):
     return with_test(success_effect(first, second, sequential=True))
-
-
-def variants(wins: int, losses: int, n: int):
-    scene = np.arange(n)
-    return scene < wins, (scene >= wins) & (scene < wins + losses)
 
 
 @pytest.mark.parametrize(
@@ -59,7 +55,7 @@ def test_a_bet_on_discordant_pairs_is_robbins_mixture():
 def test_the_interval_leaves_out_0_exactly_where_the_test_rejects(scenes):
     for wins in range(scenes + 1):
         for losses in range(scenes + 1 - wins):
-            found = effect(*variants(wins, losses, scenes))
+            found = effect(*counted(wins, losses, scenes))
             assert found.test is not None
             assert (found.sign_of_interval != 0) == (found.test.p_value <= 0.05)
             assert found.sign_of_interval in (0, found.test.leans)
@@ -83,7 +79,7 @@ def test_swapping_the_variants_mirrors_and_copying_a_seed_changes_nothing(seed, 
 
 
 def test_each_contrast_stands_at_its_own_share():
-    one, two = effect(*variants(9, 0, 40)), effect(*variants(0, 9, 40))
+    one, two = effect(*counted(9, 0, 40)), effect(*counted(0, 9, 40))
     family = {"one": one, "two": two, "change": with_test(change(one, two))}
     shares = {"one": 0.5, "two": 0.1, "change": 0.1}
     decided = decide_family(family, 0.05, shares)

@@ -1,12 +1,11 @@
 """Bootstrap effects: the laws that they must keep, against plain resampling, and their speed."""
 
-from functools import partial
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
+from paired import conditional_effect
 from scipy.stats import sem
 from scipy.stats import t as student
 
@@ -15,9 +14,6 @@ from faultpath.stats.contrast import change, percentile_interval
 from faultpath.stats.effects import mean_effect, median_effect, success_effect, success_rate
 from faultpath.stats.estimate import SCENES, SCENES_AND_SEEDS, Estimate
 from faultpath.stats.resamples import Resamples, quantiles
-
-conditional_effect = partial(success_effect, test="conditional")
-"""The paper's effect."""
 
 N = 20
 RESAMPLES = Resamples.draw("laws", N, n_resamples=500)

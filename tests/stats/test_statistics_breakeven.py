@@ -1,18 +1,13 @@
 """Break-even frequencies: the set of undecided frequencies, what it says and what it never says."""
 
-from functools import partial
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from paired import conditional_effect, counted
 
 from faultpath.stats.breakeven import break_even, mixture_curve
-from faultpath.stats.effects import success_effect
 from faultpath.stats.resamples import Resamples
-
-conditional_effect = partial(success_effect, test="conditional")
-"""The paper's effect."""
 
 N = 100
 RESAMPLES = Resamples.draw("break-even", N, n_resamples=400)
@@ -20,8 +15,7 @@ RESAMPLES = Resamples.draw("break-even", N, n_resamples=400)
 
 def effect(wins, losses, first_scene=0):
     """An effect in which the named number of scenes is won and lost, from ``first_scene`` on."""
-    scene = (np.arange(N) - first_scene) % N
-    return conditional_effect(scene < wins, (scene >= wins) & (scene < wins + losses), RESAMPLES)
+    return conditional_effect(*counted(wins, losses, N, first_scene), RESAMPLES)
 
 
 @pytest.mark.parametrize(

@@ -5,10 +5,10 @@ from itertools import combinations
 import numpy as np
 import pytest
 import simulation_scan as scans
+from paired import holm
 from scipy.stats import binomtest
 from simulation import kept
 from simulation_skewed import Skewed
-from statsmodels.stats.multitest import multipletests
 
 from faultpath.stats import score
 from faultpath.stats.cancelling import ahead, cancelling, fewest_scenes, stage_one
@@ -75,8 +75,8 @@ def test_p_values_are_exact_mcnemars_by_holm():
     result = cancelling(none, dict(enumerate(singles)), pairs, set())
     exact = [binomial(none, values) for values in singles]
     assert [single.p_value for single in result.singles.values()] == pytest.approx(exact)
-    by_holm = multipletests(exact, method="holm")[1]
-    assert [single.corrected_p for single in result.singles.values()] == pytest.approx(by_holm)
+    corrected = [single.corrected_p for single in result.singles.values()]
+    assert corrected == pytest.approx(holm(exact))
     hurt = [pair for pair in pairs if all(result.singles[e].kind == "hurts" for e in pair)]
     assert len(hurt) > 2
     worse = [min(pair, key=lambda error: singles[error].mean()) for pair in hurt]
@@ -85,8 +85,7 @@ def test_p_values_are_exact_mcnemars_by_holm():
         for pair, error in zip(hurt, worse, strict=True)
     ]
     assert [result.pairs[pair].p_value for pair in hurt] == pytest.approx(exact)
-    by_holm = multipletests(exact, method="holm")[1]
-    assert [result.pairs[pair].corrected_p for pair in hurt] == pytest.approx(by_holm)
+    assert [result.pairs[pair].corrected_p for pair in hurt] == pytest.approx(holm(exact))
     assert all(result.pairs[pair].corrected_p is None for pair in pairs if pair not in hurt)
 
 

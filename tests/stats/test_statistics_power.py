@@ -6,18 +6,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from paired import counted
 from scipy.stats import beta, binom, binomtest, norm
 
 from faultpath.stats.decisions import with_test
 from faultpath.stats.distributions import binomial_cdf, binomial_pmf, normal_quantile
 from faultpath.stats.effects import success_effect
 from faultpath.stats.power import detectable, rule_power
-
-
-def counted(first_only, second_only, n_pairs=100):
-    """Variants of one seed with these counts."""
-    scene = np.arange(n_pairs)
-    return scene < first_only, (scene >= first_only) & (scene < first_only + second_only)
 
 
 def differences(first, second):

@@ -1,23 +1,19 @@
 """Every figure of the paper that follows from its own counts must come out of this layer."""
 
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
 from faultpath_paper.quantities.summaries import spearman
+from paired import conditional_effect
 
 from faultpath.report.sentences import wording
 from faultpath.stats.breakeven import break_even
 from faultpath.stats.contrast import change, percentile_interval
 from faultpath.stats.decisions import with_test
 from faultpath.stats.distributions import sign_p_value
-from faultpath.stats.effects import success_effect
 from faultpath.stats.resamples import Resamples
-
-conditional_effect = partial(success_effect, test="conditional")
-"""The paper's effect."""
 
 PUBLISHED = yaml.safe_load((Path(__file__).parent / "published.yaml").read_text())
 SCENES = PUBLISHED["scenes"]

@@ -1,23 +1,18 @@
 """The score interval: Tango's for one seed, its laws for several, and never a width of zero."""
 
-from functools import partial
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
+from paired import conditional_effect
 from scipy.optimize import brentq
-from scipy.stats import norm
-from statsmodels.stats.proportion import proportion_confint
+from scipy.stats import binomtest, norm
 
 from faultpath.stats.contrast import change
-from faultpath.stats.effects import success_effect, success_rate
+from faultpath.stats.effects import success_rate
 from faultpath.stats.resamples import Resamples
 from faultpath.stats.score import SceneValues, reach, rejects
-
-conditional_effect = partial(success_effect, test="conditional")
-"""The paper's effect."""
 
 Z = float(norm.ppf(0.975))
 N = 30
@@ -106,7 +101,7 @@ def test_a_change_is_bounded_by_the_sum_of_both_bounds():
 def test_one_variants_rate_has_wilsons_interval(successes):
     outcomes = np.arange(N) < successes
     found = success_rate(outcomes, RESAMPLES)
-    low, high = proportion_confint(successes, N, method="wilson")
+    low, high = binomtest(successes, N).proportion_ci(method="wilson")
     assert found.interval == pytest.approx((100 * low, 100 * high), abs=1e-9)
     assert found.method == "score (Wilson)"
     seeds = success_rate(np.tile(outcomes[:, None], 3), RESAMPLES)
