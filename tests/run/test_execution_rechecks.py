@@ -16,6 +16,7 @@ from faultpath.report.sentences.findings import describe
 from faultpath.run.deliveries import Deliveries
 from faultpath.run.execution.recheck import SAMPLE, Rechecks
 from faultpath.run.execution.runner import run_plan
+from faultpath.run.work.executor import Lost
 
 _CALLS = itertools.count()
 
@@ -130,6 +131,17 @@ def test_a_run_killed_between_second_runs_ends_with_the_same_tables(tmp_path, ki
         assert result.rechecks == whole.rechecks
         for name in ("outcomes.parquet", "deliveries.json", "rechecks.json"):
             assert (folder / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+
+
+def test_a_second_run_whose_worker_died_is_tried_again(tmp_path, monkeypatch):
+    handle_reply = Rechecks.handle_reply
+    with monkeypatch.context() as patched:
+        died = Lost("it was killed")
+        patched.setattr(Rechecks, "handle_reply", lambda *at: handle_reply(*at[:2], died))
+        first = run_plan(plan(), tmp_path, workers=0)
+    assert all("could not be run again (it was killed)" in describe(f) for f in first.findings)
+    again = run_plan(plan(), tmp_path, workers=0)
+    assert (len(first.findings), len(again.rechecks), again.findings) == (2, 2, ())
 
 
 def _stopping(after: int):

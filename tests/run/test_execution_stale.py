@@ -10,7 +10,9 @@ import pytest
 from stale_toys import Mine
 
 from faultpath.core.errors import UserError
+from faultpath.run.execution.recheck import Rechecks
 from faultpath.run.execution.runner import run_plan
+from faultpath.run.plan import Task, Unit
 from faultpath.run.provenance import RunProvenance, run_provenance
 from faultpath.run.work.processes import local
 
@@ -93,6 +95,20 @@ def test_without_workers_data_that_change_under_way_end_the_run(mine, tmp_path):
     with pytest.raises(UserError, match=r"push\.txt changed while the run was under way"):
         run_plan(mine.plan(), tmp_path / "run", workers=0, progress=edit)
     assert len(list((tmp_path / "run" / "shards").iterdir())) == 2
+
+
+def test_an_edit_during_second_runs_is_no_finding_of_theirs(mine, tmp_path, monkeypatch):
+    def edit(rechecks: Rechecks, sound: list[Unit]) -> tuple[Task, ...]:
+        mine.data.write_text("1.0")
+        return tasks(rechecks, sound)
+
+    tasks = Rechecks.tasks
+    with monkeypatch.context() as patch:
+        patch.setattr(Rechecks, "tasks", edit)
+        with pytest.raises(UserError, match=r"push\.txt changed while the run was under way"):
+            run_plan(mine.plan(), tmp_path / "run", workers=0)
+    mine.data.write_text("0.0")
+    assert run_plan(mine.plan(), tmp_path / "run", workers=0).findings == ()
 
 
 def test_an_edit_under_way_of_what_nothing_loads_ends_no_run(mine, tmp_path):

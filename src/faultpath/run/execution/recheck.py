@@ -14,7 +14,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from faultpath.core.errors import UserError
+from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.files.atomic import write_text
 from faultpath.core.files.opening import LARGEST_TEXT, contents
 from faultpath.core.files.plain import Misread, model_of
@@ -96,7 +96,7 @@ class Rechecks:
         kept = _Kept()
         with suppress(OSError, Misread):
             kept = model_of(contents(folder.rechecks, LARGEST_TEXT), _Kept)
-        self._kept = {
+        self._kept: dict[tuple[str, str | None, tuple[str, ...]], Recheck] = {
             (recheck.unit, recheck.why, recheck.scenes): recheck for recheck in kept.rechecks
         }
 
@@ -128,11 +128,24 @@ class Rechecks:
             guarded.scenes[1:] or guarded.scenes, key=lambda scene: _hash_order(guarded.key, scene)
         )
         tasks = (Task(unit, scenes, recheck="sample"), Task(guarded, (scene,), recheck="guarded"))
-        return tuple(t for t in tasks if (t.unit.key, t.recheck, t.scenes) not in self._kept)
+        return tuple(task for task in tasks if not self._compared(task))
+
+    def _compared(self, task: Task) -> bool:
+        """Return whether a second run of a task has shown something; one that failed may have been
+        the machine's fault, and is tried again as failed trials are."""
+        kept = self._kept.get((task.unit.key, task.recheck, task.scenes))
+        if kept is None or kept.deviation is None:
+            return kept is not None
+        return not (kept.deviation.died or kept.deviation.raised)
 
     def handle_reply(self, task: Task, reply: Reply) -> None:
-        """Compare what came of a second run with the first; keep what that showed."""
+        """Compare what came of a second run with the first; keep what that showed.
+
+        Raises an error that is none of the system's, such as of a file that changed under way.
+        """
         assert task.recheck is not None
+        if isinstance(reply, Failed) and not isinstance(reply.error, SystemMistake):
+            raise reply.error
         treatment = task.unit.treatment
         # Results have to repeat here: that readings differ in a last bit with the number of scenes
         # in a call, as products of matrices do, is no reason to conclude nothing.
