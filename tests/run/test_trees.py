@@ -101,6 +101,33 @@ def test_a_project_may_move(files, tmp_path):
     assert before == _state(folder.rename(tmp_path / "elsewhere"))
 
 
+def test_sources_of_one_name_in_three_folders_all_count(tmp_path):
+    files = [tmp_path / place / "parts" / "zz_part.py" for place in "abc"]
+    for file in files:
+        file.parent.mkdir(parents=True)
+        file.touch()
+    roots = [Root(f"zz_part_{place}", file) for place, file in enumerate(files)]
+    before = read_code(roots).state
+    for file in files:
+        file.write_text("pass")
+        assert len(read_code(roots).state.changed(before)) == 1
+        file.write_text("")
+
+
+def test_all_parts_of_a_package_in_several_folders_count(files, tmp_path, monkeypatch):
+    folder = files(zz_start="import zz_spread")
+    parts = [tmp_path / place / "zz_spread" / "one.py" for place in "ab"]
+    for part in parts:
+        part.parent.mkdir(parents=True)
+        part.touch()
+    monkeypatch.setattr(sys, "path", [*sys.path, *(str(part.parents[1]) for part in parts)])
+    before = _state(folder)
+    for part in parts:
+        part.write_text("pass")
+        assert len(_state(folder).changed(before)) == 1
+        part.write_text("")
+
+
 @pytest.mark.parametrize("name", ["numpy", "packaging"])
 def test_another_release_of_a_package_or_of_what_it_requires_changes_the_digest(
     name, files, monkeypatch

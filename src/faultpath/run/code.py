@@ -134,8 +134,10 @@ def read_code(
         names = {path.relative_to(tree.folder).as_posix(): d for path, d in tree.digests.items()}
         if tree.package:
             names = {tree.package: sha256(repr(sorted(names.items())).encode()).hexdigest()}
-        elif not sources.keys().isdisjoint(names):
-            names = {f"{tree.folder.name}/{name}": digest for name, digest in names.items()}
+        above = tree.folder
+        while not sources.keys().isdisjoint(names):
+            names = {f"{above.name}/{name}": digest for name, digest in names.items()}
+            above = above.parent
         sources.update(names)
     files: dict[str, Path] = {}
     digests: dict[str, str] = {}
