@@ -51,6 +51,13 @@ def test_a_run_of_ones_own_is_traced_and_a_fault_shows_whom_it_reaches():
     ]
 
 
+def test_all_faults_of_an_injection_point_are_named():
+    fault = "gain:scale=0.7@observer & gain:offset=0.1@observer"
+    _, traced = trace(TOY, "calibrated", fault, library="carts")
+    (altered,) = {read.altered_by for read in traced.reads if read.reader == "observer.model"}
+    assert altered == ("scaled by 0.7", "offset by 0.1")
+
+
 @pytest.mark.parametrize(
     ("name", "variant", "broken", "sentence"),
     [

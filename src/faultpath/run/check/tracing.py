@@ -122,11 +122,10 @@ def trace_system(system: System, spec: SystemSpec, question: TraceQuestion) -> T
     )
     if run.error:
         findings = (EndedEarly(run.error),)
-    words = {
-        (fault.channel, reader): fault.intervention.words()
-        for fault in faults
-        for reader in fault.readers
-    }
+    words: dict[tuple[str, str], list[str]] = {}
+    for fault in faults:
+        for reader in fault.readers:
+            words.setdefault((fault.channel, reader), []).append(fault.intervention.words())
     return Trace[TraceFinding](
         system=spec.name,
         options=spec.options,
@@ -144,7 +143,7 @@ def trace_system(system: System, spec: SystemSpec, question: TraceQuestion) -> T
                 source=read.source,
                 valid_step=read.valid_step,
                 requests=read.requests,
-                altered_by=(words[read.tap],) if read.altered else (),
+                altered_by=tuple(words[read.tap]) if read.altered else (),
             )
             for read in run.reads
         ),
