@@ -13,7 +13,7 @@ from faultpath.core.errors import UserError
 from faultpath.core.files import parquet
 from faultpath.loop import NotDelivered, TapCount, UndeclaredReader
 from faultpath.run.execution.runner import RunResult, run_plan
-from faultpath.run.plan import Plan, Row, Treatment, units_of
+from faultpath.run.plan import Plan, Row, TaskQueue, Treatment, Unit, units_of
 from faultpath.run.store import tables
 from faultpath.run.store.folder import RunFolder, read_outcomes
 from faultpath.run.store.tables import decode_traces, traces_of
@@ -136,6 +136,26 @@ def test_bookkeeping_grows_with_the_rows_and_not_with_rows_times_blocks(tmp_path
         run_plan(plan(scenes), tmp_path / str(len(scenes)), workers=0)
         counts.append(Counter(calls))
     assert counts[0] == counts[1]
+
+
+def test_the_work_of_a_block_is_counted_once_and_not_for_each_block_that_is_taken():
+    class Scenes(tuple[str, ...]):
+        counted = 0
+
+        def __len__(self) -> int:
+            Scenes.counted += 1
+            return super().__len__()
+
+    sizes = [1, 3, 2, 3, *[1] * 96]
+    treatment = Treatment(variant="plain")
+    units = [
+        Unit(f"{block}", treatment, "t", block, Scenes(f"s{n}" for n in range(size)))
+        for block, size in enumerate(sizes)
+    ]
+    queue = TaskQueue(units, in_order=False)
+    taken = [task.unit.block for task in iter(lambda: queue.take(0), None)]
+    assert taken == [1, 3, 2, 0, *range(4, 100)]
+    assert Scenes.counted == len(sizes)
 
 
 def test_rows_of_one_condition_may_have_scenes_of_their_own(tmp_path: Path) -> None:

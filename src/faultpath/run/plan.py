@@ -150,7 +150,8 @@ def units_of(plan: Plan, library: Library, block_size: int, fingerprint: str) ->
     units: list[Unit] = []
     for part, treatments in parts.items():
         blocks: dict[int, list[str]] = {}
-        part_scenes = [scene for scene in scenes if scene.id in part] if part else scenes
+        within = frozenset(part)
+        part_scenes = [scene for scene in scenes if scene.id in within] if part else scenes
         for place, scene in enumerate(part_scenes):
             block = place // per_analysis if per_analysis else scene.index // block_size
             blocks.setdefault(block, []).append(scene.id)
@@ -196,6 +197,8 @@ class TaskQueue:
         for unit in units:
             self._blocks.setdefault(unit.block, deque()).append(Task(unit, unit.scenes))
         self._home: dict[int, int] = {}
+        self._free = deque(sorted(self._blocks, key=self._left, reverse=True))
+        """Blocks that were no worker's home, the one with the most work first."""
 
     def take(self, worker: int) -> Task | None:
         """Return the next task for a worker, or `None` when nothing waits."""
@@ -203,18 +206,16 @@ class TaskQueue:
             return None
         home = min(self._blocks) if self._in_order else self._home.get(worker)
         if home not in self._blocks:
-            taken = set(self._home.values())
-            free = [block for block in self._blocks if block not in taken]
-            home = max(
-                free or self._blocks,
-                key=lambda block: sum(len(task.scenes) for task in self._blocks[block]),
-            )
+            home = self._free.popleft() if self._free else max(self._blocks, key=self._left)
             self._home[worker] = home
         tasks = self._blocks[home]
         task = tasks.popleft()
         if not tasks:
             del self._blocks[home]
         return task
+
+    def _left(self, block: int) -> int:
+        return sum(len(task.scenes) for task in self._blocks[block])
 
     def put(self, tasks: Sequence[Task]) -> None:
         """Put tasks back, before everything else of their block."""
