@@ -284,7 +284,12 @@ DAMAGED: dict[str, tuple[str, bytes, str]] = {
     "kind": ("a.txt", b"", "is of no kind that is read"),
     "json": ("a.json", b'{"per_task": [{"task_id": 1}]}', r"per_task\[0\].task_group: is missing"),
     "neither": ("a.json", b"{}", "is neither LeRobot's eval_info.json"),
-    "line": ("a.jsonl", b'{"variant": 1}\n{', "a.jsonl, line 2: is not JSON"),
+    "line": (
+        "a.jsonl",
+        b'{"variant": 1, "scene": 1, "success": 1}\n{',
+        "a.jsonl, line 2: is not JSON",
+    ),
+    "first of two lines": ("a.jsonl", b'{"variant": 1}\n{', "a.jsonl, line 1 has no scene"),
     "parquet": ("a.parquet", b"PAR1", "a.parquet: cannot be read"),
 }
 
