@@ -1,6 +1,7 @@
 """A contrast is of trials that met the same conditions; other pairs are void."""
 
-from collections.abc import Callable
+import weakref
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +12,7 @@ from faultpath.report.sentences.findings import describe
 from faultpath.run.pairing import Group, PairingRefused, Pairs, pair
 from faultpath.run.trials import Trial, Trials
 from faultpath.system import Status
+from faultpath.system.outcome import Outcome
 
 ONE, TWO = Group("repair", "shared"), Group("baseline", "shared")
 SCENES = ("a", "b", "c")
@@ -150,3 +152,17 @@ def test_trials_that_share_nothing_do_not_take_all_memory():
         Trials.of(trials)
     with pytest.raises(ValueError, match="two trials have the same"):
         Trials.of([trials[0], trials[0]])
+
+
+def test_a_table_holds_its_trials_as_arrays_alone():
+    outcomes = list[weakref.ref[Outcome]]()
+
+    def rows() -> Iterator[Trial]:
+        for index in range(3):
+            assert not any(outcome() for outcome in outcomes[:-1])  # the last may be a variable
+            row = _trial(ONE, 3, index, success=True)
+            outcomes.append(weakref.ref(row.outcome))
+            yield row
+            del row
+
+    assert len(Trials.of(rows())) == 3

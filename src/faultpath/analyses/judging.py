@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from faultpath.analyses.decide import primary_condition
 from faultpath.analyses.facts import ComparisonFacts
-from faultpath.analyses.judging_table import Address, Key, table_of, units_of
+from faultpath.analyses.judging_table import Cell, Key, table_of, units_of
 from faultpath.analyses.model import AS_RUN, CORRECT, SHARED, Condition, title_of, where
 from faultpath.core.errors import UserError
 from faultpath.core.text import listed, unknown
@@ -52,7 +52,7 @@ def pair_results(rows: Sequence[Received], request: JudgeQuestion) -> PairedResu
             "--cluster task takes scenes and seeds alike as trials of a task, so it does not know "
             "which trainings there are: leave it or --generalise models out."
         )
-    received = _by_address(rows, names, request)
+    received = _by_key(rows, names, request)
     ordered = sorted(set(names.values()), key=lambda name: (name == SHARED, name != CORRECT, name))
     _check_paired(received, ordered, request)
 
@@ -128,10 +128,11 @@ def _condition_names(conditions: Collection[str], question: JudgeQuestion) -> di
     return names
 
 
-def _by_address(
+def _by_key(
     rows: Iterable[Received], names: Mapping[str, str], question: JudgeQuestion
-) -> dict[Address, Received]:
-    trials: dict[Address, Received] = {}
+) -> dict[Cell, dict[Key, Received]]:
+    trials: dict[Cell, dict[Key, Received]] = {}
+    keys: dict[Key, Key] = {}
     scenes: dict[str, tuple[str, str]] = {}
     for row in rows:
         scene = f"{row.task}/{row.scene}" if row.task else row.scene
@@ -143,8 +144,9 @@ def _by_address(
         key = (scene, row.seed)
         if question.cluster == "task":
             key = (row.task, f"{row.scene}, seed {row.seed}" if row.seed else row.scene)
-        address = (row.variant, names[row.condition], key)
-        if (before := trials.setdefault(address, row)) is not row:
+        key = keys.setdefault(key, key)  # one for all variants and conditions
+        of_cell = trials.setdefault((row.variant, names[row.condition]), {})
+        if (before := of_cell.setdefault(key, row)) is not row:
             seed = f", seed {row.seed}" if row.seed else ""
             columns = "--column seed=NAME"
             if not any(names):  # of no trial the condition is known
@@ -158,22 +160,22 @@ def _by_address(
 
 
 def _check_paired(
-    trials: Collection[Address], conditions: Sequence[str], question: JudgeQuestion
+    trials: Mapping[Cell, Mapping[Key, Received]],
+    conditions: Sequence[str],
+    question: JudgeQuestion,
 ) -> None:
     """Raise `UserError` for a condition without a trial that both variants have."""
     for condition in conditions:
-        ones, twos = keys = [
-            sorted(key for variant, at, key in trials if (variant, at) == (name, condition))
-            for name in (question.baseline, question.repair)
-        ]
-        for name, known in zip((question.baseline, question.repair), keys, strict=True):
+        versions = (question.baseline, question.repair)
+        keys = [trials.get((name, condition), {}).keys() for name in versions]
+        for name, known in zip(versions, keys, strict=True):
             if not known:
                 raise UserError(
                     f"'{name}' has no trial {where(condition)}: give both versions under each "
                     "condition."
                 )
-        if not set(ones) & set(twos):
-            first, second = (", seed ".join(filter(None, known[0])) for known in keys)
+        if keys[0].isdisjoint(keys[1]):
+            first, second = (", seed ".join(filter(None, min(known))) for known in keys)
             raise UserError(
                 f"no trial of '{question.baseline}' has its pair in '{question.repair}' "
                 f"{where(condition)} (the first are scene {first} and scene {second}): name the "

@@ -1,9 +1,9 @@
 """The table of judged trials: which of a scene or task are compared, and which are missing."""
 
 from collections import Counter
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import product
+from itertools import chain, product
 
 from faultpath.core.errors import UserError
 from faultpath.run.question import FEWEST_TRAININGS
@@ -14,8 +14,8 @@ from faultpath.system.outcome import Outcome, Status, failed_outcome
 
 Key = tuple[str, str]
 """A trial within its variant and condition: its scene or task, and its label there."""
-Address = tuple[str, str, Key]
-"""Variant, condition and key."""
+Cell = tuple[str, str]
+"""Variant and condition."""
 
 
 @dataclass(frozen=True)
@@ -29,11 +29,11 @@ class Units:
     seeds: tuple[int, ...]
 
 
-def units_of(trials: Iterable[Address], request: JudgeQuestion) -> Units:
+def units_of(trials: Mapping[Cell, Iterable[Key]], request: JudgeQuestion) -> Units:
     """Return the trials compared of each scene or task; `UserError` where the question is of newly
     trained models and trials have no seeds."""
     labels: dict[str, dict[str, None]] = {}
-    for _, _, (unit, label) in trials:
+    for unit, label in chain.from_iterable(trials.values()):
         labels.setdefault(unit, {})[label] = None
     often = Counter(label for members in labels.values() for label in members)
     sizes = Counter(len(members) for members in labels.values())
@@ -62,30 +62,33 @@ def units_of(trials: Iterable[Address], request: JudgeQuestion) -> Units:
 
 
 def table_of(
-    trials: Mapping[Address, Received],
+    trials: Mapping[Cell, Mapping[Key, Received]],
     conditions: Sequence[str],
     units: Units,
     request: JudgeQuestion,
     hashed: bool,
-) -> tuple[Trials, dict[tuple[str, str], list[Key]]]:
+) -> tuple[Trials, dict[Cell, list[Key]]]:
     """Return a row for each trial that should be there, and by variant and condition the keys of
     those that are not."""
-    rows: list[Trial] = []
-    missing: dict[tuple[str, str], list[Key]] = {}
-    tasks = {unit: row.task for (_, _, (unit, _)), row in trials.items()}
+    missing: dict[Cell, list[Key]] = {}
+    tasks = {unit: row.task for rows in trials.values() for (unit, _), row in rows.items()}
     ordered = sorted(units.labels, key=in_order)
-    for condition, variant in product(conditions, (request.baseline, request.repair)):
-        for (at, seed), (index, unit) in product(enumerate(units.seeds), enumerate(ordered)):
-            labels = units.compared[unit][at : at + 1]
-            row = trials.get((variant, condition, (unit, labels[0]))) if labels else None
-            if row is None:
-                missing.setdefault((variant, condition), []).append((unit, "".join(labels)))
-            topology = tasks[unit] if request.cluster == "scene" else ""
-            outcome = _outcome(unit, row, hashed)
-            rows.append(Trial(variant, condition, seed, index, topology, outcome))
-    place = {condition: place for place, condition in enumerate(conditions)}
-    rows.sort(key=lambda row: (place[row.condition], row.variant, row.seed, row.scene_index))
-    return Trials.of(rows), missing
+
+    def rows() -> Iterator[Trial]:
+        for condition, variant in product(conditions, sorted((request.baseline, request.repair))):
+            received = trials[variant, condition]
+            for (at, seed), (index, unit) in product(enumerate(units.seeds), enumerate(ordered)):
+                labels = units.compared[unit][at : at + 1]
+                row = received.get((unit, labels[0])) if labels else None
+                if row is None:
+                    missing.setdefault((variant, condition), []).append((unit, "".join(labels)))
+                topology = tasks[unit] if request.cluster == "scene" else ""
+                outcome = _outcome(unit, row, hashed)
+                yield Trial(variant, condition, seed, index, topology, outcome)
+
+    table = Trials.of(rows())
+    cells = ((name, at) for at in conditions for name in (request.baseline, request.repair))
+    return table, {cell: missing[cell] for cell in cells if cell in missing}
 
 
 def _outcome(scene: str, row: Received | None, hashed: bool) -> Outcome:

@@ -67,6 +67,7 @@ def judge(
     started = datetime.now(UTC)
     rows, sources = read_results(named, question)
     paired = pair_results(rows, question)
+    del rows  # as objects they take more memory than all that follows
     if notice := _modules_notice(paired, shown):
         shown.say(notice)
     folder = question.folder or _folder(paired, sources)

@@ -1,11 +1,13 @@
 """All trials of a run as arrays, one row a trial, and an index of what was planned into them."""
 
 import math
+import sys
+from array import array
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import compress
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,46 +78,51 @@ class Trials:
 
         `ValueError` where two stand in one place, and for a plan that is almost all empty.
         """
-        rows = tuple(trials)
-        outcomes = [trial.outcome for trial in rows]
-        refs: dict[str, SceneRef] = {}
-        for trial in rows:
-            if (scene := trial.outcome.scene) not in refs:
-                refs[scene] = SceneRef(scene, trial.scene_index, trial.topology)
-        scenes = tuple(sorted(refs.values(), key=lambda scene: scene.index))
-        variants = tuple(dict.fromkeys(trial.variant for trial in rows))
-        conditions = tuple(dict.fromkeys(trial.condition for trial in rows))
-        seeds = tuple(dict.fromkeys(trial.seed for trial in rows))
-        axes = (variants, conditions, seeds, [scene.id for scene in scenes])
-        shape = [len(axis) for axis in axes]
-        if math.prod(shape) > max(_MOST_CELLS, len(rows) * _MOST_EMPTY):
-            raise ValueError("hardly any variant has a trial under the same condition and seed")
-        places = [{label: place for place, label in enumerate(axis)} for axis in axes]
-        labels = ((t.variant, t.condition, t.seed, t.outcome.scene) for t in rows)
-        cells = [[axis[name] for axis, name in zip(places, of, strict=True)] for of in labels]
-        index = np.full(shape, -1, np.int64)
-        index[tuple(np.array(cells, np.int64).reshape(-1, 4).T)] = np.arange(len(rows))
-        if int((index >= 0).sum()) != len(rows):
-            raise ValueError("two trials have the same variant, condition, seed and scene")
-        names = dict.fromkeys(name for outcome in outcomes for name in outcome.metrics)
+        axes: tuple[dict[Any, int], ...] = ({}, {}, {}, {})
+        scenes: list[SceneRef] = []
+        cells, steps, status, time_s = array("q"), array("q"), array("b"), array("d")
+        metrics: dict[str, array[float]] = {}
+        texts: dict[str, list[str]] = {name: [] for name in TEXTS}
+        errors: dict[int, str] = {}
+        traces: dict[int, NDArray[np.float32]] = {}
+        for row, trial in enumerate(trials):  # one by one: as objects they would fill the memory
+            outcome = trial.outcome
+            labels = trial.variant, trial.condition, trial.seed, outcome.scene
+            for axis, label in zip(axes, labels, strict=True):
+                cells.append(axis.setdefault(label, len(axis)))
+            if len(scenes) < len(axes[-1]):
+                scenes.append(SceneRef(outcome.scene, trial.scene_index, trial.topology))
+            status.append(STATUSES.index(outcome.status))
+            time_s.append(outcome.time_s)
+            steps.extend((outcome.faulted_steps, outcome.altered_steps))
+            for name in outcome.metrics:
+                if name not in metrics:
+                    metrics[name] = array("d", [math.nan]) * row
+            for name, values in metrics.items():
+                value = outcome.metrics.get(name)
+                values.append(math.nan if value is None else value)
+            for name, column in texts.items():
+                column.append(sys.intern(str(getattr(outcome, name))))
+            if outcome.error is not None:
+                errors[row] = outcome.error
+            if outcome.trace is not None:
+                traces[row] = outcome.trace
+        variants, conditions, seeds = (tuple(axis) for axis in axes[:-1])
+        order = sorted(range(len(scenes)), key=lambda place: scenes[place].index)
+        index = _index_of(np.array(cells).reshape(-1, len(axes)), [len(axis) for axis in axes])
         return cls(
             variants=variants,
             conditions=conditions,
             seeds=seeds,
-            scenes=scenes,
-            index=index,
-            status=np.array([STATUSES.index(o.status) for o in outcomes], np.int8),
-            time_s=np.array([o.time_s for o in outcomes], np.float64),
-            metrics={
-                name: np.array([o.metrics.get(name) for o in outcomes], np.float64)
-                for name in names
-            },
-            steps=np.array([[o.faulted_steps, o.altered_steps] for o in outcomes], np.int64)
-            .reshape(-1, 2)
-            .T,
-            texts={name: np.array([getattr(o, name) for o in outcomes], object) for name in TEXTS},
-            errors={row: o.error for row, o in enumerate(outcomes) if o.error is not None},
-            traces={row: o.trace for row, o in enumerate(outcomes) if o.trace is not None},
+            scenes=tuple(scenes[place] for place in order),
+            index=index[..., order],
+            status=np.array(status),
+            time_s=np.array(time_s),
+            metrics={name: np.array(values) for name, values in metrics.items()},
+            steps=np.array(steps).reshape(-1, 2).T,
+            texts={name: np.array(column, object) for name, column in texts.items()},
+            errors=errors,
+            traces=traces,
         )
 
     def __len__(self) -> int:
@@ -204,3 +211,14 @@ class Trials:
         if variant not in self.variants or condition not in self.conditions:
             return np.full((len(self.seeds), len(self.scenes)), -1, np.int64)
         return self.index[self.variants.index(variant), self.conditions.index(condition)]
+
+
+def _index_of(cells: Rows, shape: Sequence[int]) -> Rows:
+    """Return the row of each cell of a plan, from the cell of each row; raises as `Trials.of`."""
+    if math.prod(shape) > max(_MOST_CELLS, len(cells) * _MOST_EMPTY):
+        raise ValueError("hardly any variant has a trial under the same condition and seed")
+    index = np.full(shape, -1, np.int64)
+    index[tuple(cells.T)] = np.arange(len(cells))
+    if int((index >= 0).sum()) != len(cells):
+        raise ValueError("two trials have the same variant, condition, seed and scene")
+    return index

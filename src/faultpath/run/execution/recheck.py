@@ -96,7 +96,7 @@ class Rechecks:
         kept = _Kept()
         with suppress(OSError, Misread):
             kept = model_of(contents(folder.rechecks, LARGEST_TEXT), _Kept)
-        self._kept = {
+        self._kept: dict[tuple[str, str | None, tuple[str, ...]], Recheck] = {
             (recheck.unit, recheck.why, recheck.scenes): recheck for recheck in kept.rechecks
         }
 
@@ -134,8 +134,9 @@ class Rechecks:
         """Return whether a second run of a task has shown something; one that failed may have been
         the machine's fault, and is tried again as failed trials are."""
         kept = self._kept.get((task.unit.key, task.recheck, task.scenes))
-        differs = kept and kept.deviation
-        return kept is not None and not (differs and (differs.died or differs.raised))
+        if kept is None or kept.deviation is None:
+            return kept is not None
+        return not (kept.deviation.died or kept.deviation.raised)
 
     def handle_reply(self, task: Task, reply: Reply) -> None:
         """Compare what came of a second run with the first; keep what that showed.

@@ -2,7 +2,7 @@
 
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -16,7 +16,7 @@ from faultpath.run.plan import Plan, Task, Treatment, Unit, selected
 from faultpath.run.store.folder import RunFolder
 from faultpath.run.trials import Trial, Trials
 from faultpath.run.work.executor import Failed, Lost, Progress
-from faultpath.system.declared import Library
+from faultpath.system.declared import Library, SceneRef
 from faultpath.system.outcome import Outcome, failed_outcome
 
 FEW = 5
@@ -82,6 +82,10 @@ class RunState:
         self._failed, self._sound = 0, False
         self._stop = stop if plan.scenes_per_analysis else None
         self._analyses, self._over = 0, False
+        self._batches: dict[int, set[str]] = {}
+        """Keys of the units of each analysis."""
+        for unit in units if self._stop else ():
+            self._batches.setdefault(unit.block, set()).add(unit.key)
 
     def resume(self, notice: Callable[[str], None]) -> list[Unit]:
         """Take over what is stored, say how much and from when, and return what is left to do.
@@ -197,8 +201,8 @@ class RunState:
     def enough(self) -> bool:
         """Take the analyses whose trials are all there; return whether the run stops."""
         while self._stop and not self._over:
-            batch = [unit.key for unit in self._units if unit.block == self._analyses]
-            if not batch or not self._taps.keys() >= set(batch):
+            batch = self._batches.get(self._analyses)
+            if batch is None or not self._taps.keys() >= batch:
                 break
             self._analyses += 1
             self._over = self._stop(self.trials())
@@ -211,15 +215,16 @@ class RunState:
         if self._stop:
             counted = set(plan.scenes[: self._analyses * plan.scenes_per_analysis])
             scenes = tuple(scene for scene in scenes if scene.id in counted)
-        trials: list[Trial] = []
-        for row in plan.rows:
+        return Trials.of(self._counted(scenes))
+
+    def _counted(self, scenes: Sequence[SceneRef]) -> Iterator[Trial]:
+        for row in self._plan.rows:
             address, key = (row.variant, row.condition, row.seed), row.treatment.key()
-            part = frozenset(row.scenes or plan.scenes)
+            part = frozenset(row.scenes or self._plan.scenes)
             for scene in scenes:
                 if scene.id in part:
                     outcome = self.outcomes[key, scene.id]
-                    trials.append(Trial(*address, scene.index, scene.topology, outcome))
-        return Trials.of(trials)
+                    yield Trial(*address, scene.index, scene.topology, outcome)
 
     @property
     def units(self) -> tuple[Unit, ...]:

@@ -5,11 +5,12 @@ Nothing that a file names is run or imported, JSON is read strictly, and sizes h
 
 import csv
 import hashlib
-import io
 import math
 import sys
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from io import BytesIO, TextIOWrapper
 from itertools import chain
 from os import PathLike
 from pathlib import Path
@@ -41,6 +42,8 @@ _MARKS = {";": ";", "\t": "TAB", "|": "|"}
 """Marks that may stand in place of commas, and how messages show them."""
 _ENDS = {status.value: status for status in Status}
 _TRUTH = {"true": True, "yes": True, "1": True, "false": False, "no": False, "0": False}
+_NO_METRICS: Mapping[str, float] = {}
+"""One for all trials without any."""
 NO_OUTCOME = "the results give no outcome"
 
 
@@ -123,24 +126,20 @@ def _files(result: str) -> list[_ResultsFile]:
 def _cells(path: Path, data: bytes, question: JudgeQuestion, label: str) -> Cells:
     match path.suffix:
         case ".csv":
-            yield from _named(_csv(text_of(data)), question)
+            yield from _named(_csv(data), question)
         case ".parquet":
             yield from _named(((f", row {n}", row) for n, row in read_rows(data)), question)
         case ".eval":
             _check_columns(question, "a log of Inspect", ("success",))
             yield from inspect_cells(unpacked_log(path), question, label)
         case ".jsonl":
-            lines = text_of(data).split("\n")  # other line separators may stand in a text
-            rows = [
-                (f", line {n}", _object(line.encode(), n))
-                for n, line in enumerate(lines, 1)
-                if line.strip()
-            ]
-            if rows and "doc_id" in rows[0][1]:
+            rows = _lines(data)
+            first = next(rows, None)
+            if first and "doc_id" in first[1]:
                 _check_columns(question, "a file of lm-eval", ("success",))
-                yield from lm_eval_cells(path, rows, question)
-            else:
-                yield from _named(iter(rows), question)
+                yield from lm_eval_cells(path, [first, *rows], question)
+            elif first:
+                yield from _named(chain([first], rows), question)
         case ".json":
             content = _object(data)
             if "eval" in content:
@@ -170,11 +169,18 @@ def _object(data: bytes, line: int | None = None) -> dict[str, Any]:
     raise Misread("is no group of fields, {...}", line)
 
 
-def _csv(text: str) -> Cells:
-    rows = csv.reader(io.StringIO(text, newline=""), strict=True)
+def _lines(data: bytes) -> Iterator[tuple[str, dict[str, Any]]]:
+    for number, line in enumerate(BytesIO(data), 1):  # other separators may stand in a text
+        if line.strip():
+            yield f", line {number}", _object(line, number)
+
+
+def _csv(data: bytes) -> Cells:
+    text_of(data)  # refuses what is no text; as one, it would stay in memory as long as the rows
+    rows = csv.reader(TextIOWrapper(BytesIO(data), "utf-8-sig", newline=""), strict=True)
     try:
         names = next(rows, list[str]())
-        if twice := [name for at, name in enumerate(names) if name in names[:at]]:
+        if twice := [name for name, count in Counter(names).items() if count > 1]:
             raise Misread(f"column '{twice[0]}' appears twice; drop one", 1)
         if len(names) == 1 and (mark := next((m for m in _MARKS if m in names[0]), "")):
             raise Misread(f"separates its columns by '{_MARKS[mark]}'; separate them by ','", 1)
@@ -232,12 +238,12 @@ def _trial(
     time_s = _number(cells.get("time_s"), seconds)
     if time_s is not None and time_s <= 0.0:
         raise UserError(f"{seconds} is {time_s:g}: give seconds above 0, or leave it empty.")
-    metrics: dict[str, float] = {}
+    metrics = _NO_METRICS
     for name in (metric.partition(":")[0] for metric in question.metrics):
         if name not in cells:
             raise UserError(f"{where}: {unknown('metric', name, map(str, cells))}.")
         value = _number(cells[name], f"{where}: {name}")
-        metrics |= {} if value is None else {name: value}
+        metrics = metrics if value is None else {**metrics, name: value}
     return Received(
         **texts,
         where=where,

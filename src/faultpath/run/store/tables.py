@@ -78,16 +78,19 @@ def decode_shard(data: bytes, key: str) -> Done:
 
 def encode_outcomes(trials: Trials) -> bytes:
     """Return the trials without their traces, a row each."""
-    places: list[list[int]] = trials.places.T.tolist()
-    variants, conditions, seeds, scenes = places
+    variants, conditions, seeds, scenes = trials.places.T
+
+    def named(labels: Iterable[object], places: NDArray[np.integer[Any]]) -> NDArray[Any]:
+        return np.array(tuple(labels), object)[places]
+
     columns: dict[str, Any] = {
-        "variant": [trials.variants[place] for place in variants],
-        "condition": [trials.conditions[place] for place in conditions],
-        "seed": [trials.seeds[place] for place in seeds],
-        "scene": [trials.scenes[place].id for place in scenes],
-        "scene_index": [trials.scenes[place].index for place in scenes],
-        "topology": [trials.scenes[place].topology for place in scenes],
-        "status": [STATUSES[place] for place in trials.status],
+        "variant": named(trials.variants, variants),
+        "condition": named(trials.conditions, conditions),
+        "seed": named(trials.seeds, seeds),
+        "scene": named((scene.id for scene in trials.scenes), scenes),
+        "scene_index": named((scene.index for scene in trials.scenes), scenes),
+        "topology": named((scene.topology for scene in trials.scenes), scenes),
+        "status": named(STATUSES, trials.status),
         "time_s": masked(trials.time_s),
         "faulted_steps": trials.steps[0],
         "altered_steps": trials.steps[1],
@@ -108,16 +111,17 @@ def decode_outcomes(data: bytes, traces: Mapping[TrialAddress, Trace] | None = N
     """
     schema = {**_ADDRESS, **_PLACE, **_END, **_RESULT}
     rows, _ = decode(data, schema, _MAY_LACK, more=NUMBER, absent=_TRAJECTORY)
-    trials: list[Trial] = []
-    for row in rows:
-        address = _address(row)
-        outcome = _outcome(row, (traces or {}).get(address), untimed=True)
-        place = row["scene_index"], row["topology"]
-        trials.append(Trial(address.variant, address.condition, address.seed, *place, outcome))
     try:
-        return Trials.of(trials)
+        return Trials.of(_trial(row, traces or {}) for row in rows)
     except (ValueError, UserError) as error:
         raise Unreadable(str(error)) from error
+
+
+def _trial(row: Row, traces: Mapping[TrialAddress, Trace]) -> Trial:
+    address = _address(row)
+    outcome = _outcome(row, traces.get(address), untimed=True)
+    place = row["scene_index"], row["topology"]
+    return Trial(address.variant, address.condition, address.seed, *place, outcome)
 
 
 def encode_traces(trials: Trials) -> bytes:
