@@ -174,6 +174,14 @@ def test_how_many_failures_would_have_to_run_is_what_settles_it():
     assert leads == [False, True]
 
 
+def test_a_seed_that_failed_throughout_has_no_effect_of_its_own():
+    scene = np.arange(SCENES)
+    won, lost = (ends(scene < 20), ends(scene < 0)), (ends(scene < 20), ends(scene < 0, scene >= 0))
+    (effect,) = audit(won, None, lost).effects
+    assert effect.per_seed == (20.0,)
+    assert effect.won == ((20, 0), (0, 0))
+
+
 def test_how_many_failures_would_have_to_run_is_the_same_in_any_order():
     """Both versions failed alone in 10 scenes, in 5 of which that could turn a tie into a loss."""
     scene = np.arange(SCENES)

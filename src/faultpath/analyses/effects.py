@@ -57,7 +57,7 @@ class Difference(Result):
     """Lower end of the 95 % interval."""
     high: float | None
     per_seed: tuple[float, ...]
-    """The same from each seed alone."""
+    """The same from each seed alone, of those with a complete pair."""
     scenes: int
     """Scenes that it rests on: those of which a pair has both outcomes with any seed."""
     test: str
