@@ -1,5 +1,6 @@
 """From tables with known counts to exactly their numbers."""
 
+import numpy as np
 import pytest
 from outcome_tables import BASELINE, REPAIR, exact_p, record, three
 
@@ -124,6 +125,14 @@ def test_seeds_that_change_nothing_are_counted_once():
 )
 def test_floor_and_ceiling_are_both_variants_below_10_or_above_90(counts, extreme):
     assert record({CORRECT: counts}).effects[0].extreme == extreme
+
+
+def test_ninety_percent_is_no_ceiling_in_the_last_bit_either():
+    """Where trials are missing, scenes are sums of parts of seeds."""
+    effect = record({CORRECT: (90, 0, 8)}).effects[0]
+    above, below = np.nextafter(90.0, 100.0), np.nextafter(10.0, 0.0)
+    for rates in ((90.0, above), (above, above), (below, below)):
+        assert effect.model_copy(update={"rates": rates}).extreme is None
 
 
 def test_a_condition_on_which_the_fault_never_acted_is_no_part_of_the_family():

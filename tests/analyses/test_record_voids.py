@@ -174,6 +174,28 @@ def test_how_many_failures_would_have_to_run_is_what_settles_it():
     assert leads == [False, True]
 
 
+def test_a_seed_that_failed_throughout_has_no_effect_of_its_own():
+    scene = np.arange(SCENES)
+    won, lost = (ends(scene < 20), ends(scene < 0)), (ends(scene < 20), ends(scene < 0, scene >= 0))
+    (effect,) = audit(won, None, lost).effects
+    assert effect.per_seed == (20.0,)
+    assert effect.won == ((20, 0), (0, 0))
+
+
+def test_how_many_failures_would_have_to_run_is_the_same_in_any_order():
+    """Both versions failed alone in 10 scenes, in 5 of which that could turn a tie into a loss."""
+    scene = np.arange(SCENES)
+    gone, lost = (scene >= 70) & (scene < 80), scene >= 90
+    new, old = (scene < 20) | (scene >= 95), (scene == 20) | (scene == 21) | gone & (scene >= 75)
+    orders = [scene, scene[::-1], np.random.default_rng(2).permutation(SCENES)]
+    trials = [(ends(new[order], gone[order]), ends(old[order], lost[order])) for order in orders]
+    reruns = [audit(pair).effects[0].missing.reruns for pair in trials]
+    (count,) = {sum(needed) for needed in reruns}
+    assert 1 < count < 10
+    swapped = [audit(pair[::-1]).effects[0].missing.reruns for pair in trials]
+    assert swapped == [needed[::-1] for needed in reruns]
+
+
 @pytest.mark.parametrize("sign", [1, -1])
 def test_failures_that_could_part_the_trainings_leave_new_ones_open(sign):
     """Against the repair they made the fifth training one like the others, and p smaller."""

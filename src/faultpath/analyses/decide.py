@@ -161,7 +161,7 @@ def _difference(contrast: Contrast) -> dict[str, Any]:
         "value": contrast.value,
         "low": low,
         "high": high,
-        "per_seed": contrast.per_seed,
+        "per_seed": tuple(value for value in contrast.per_seed if not np.isnan(value)),
         "scenes": contrast.n_scenes,
         "test": contrast.test.name,
         "p_value": contrast.test.p_value,

@@ -127,20 +127,23 @@ def reruns_needed(
 ) -> tuple[int, int]:
     """Return how many failed trials of the repair and of the baseline have to run before those that
     are still missing cannot undo an effect, if they come out as the others did: first those of the
-    version that alone failed more often, then the others, pair by pair."""
+    version that alone failed more often, then the others, pair by pair, and of these first those
+    that could cost the most."""
     sign = corrected[name].sign
     fills = [filled(success, favour) for favour in (False, True)]
     missing = np.stack([np.isnan(part) for part in success])
     one_alone = missing & ~missing[::-1]
-    more_often = one_alone[one_alone.sum(axis=(1, 2)).argmax()]
+    often = one_alone.sum(axis=(1, 2))
+    more_often = one_alone[often == often.max()].any(axis=0)
     rank = np.where(more_often, 0, np.where(missing.all(axis=0), 1, 2))
-    pairs = sorted(map(tuple, np.argwhere(missing.any(axis=0))), key=lambda pair: rank[pair])
+    worst = sign * np.subtract(*fills[sign < 0])
+    scenes, seeds = np.nonzero(missing.any(axis=0))
+    order = np.lexsort((worst[scenes, seeds], rank[scenes, seeds]))
 
     def rerun(count: int) -> Bools:
         """Return `[scenes, seeds]` whether a pair is among the first `count`."""
         chosen = np.zeros(missing.shape[1:], dtype=np.bool_)
-        for pair in pairs[:count]:
-            chosen[pair] = True
+        chosen[scenes[order[:count]], seeds[order[:count]]] = True
         return chosen
 
     def holds_with(count: int) -> bool:
@@ -153,7 +156,7 @@ def reruns_needed(
         return correct({**corrected, **nearest_to_nothing(*ends)})[name].sign == sign
 
     # Bisection, since each further pair that ran leaves less to be set against the effect.
-    low, high = 0, len(pairs)
+    low, high = 0, len(order)
     while high - low > 1:
         middle = (low + high) // 2
         low, high = (low, middle) if holds_with(middle) else (middle, high)

@@ -26,10 +26,10 @@ class Contrast:
     """A difference over scenes, first minus second, or another value that scenes have.
 
     ``draws`` [resamples] are its bootstrap draws; ``per_seed`` the same quantity from each seed
-    alone, in seed order. Bounded outcomes have ``scenes`` too, and with them a score interval in
-    place of the bootstrap's; for new seeds it is widened to Student's t interval over ``per_seed``.
-    Without draws and scenes there is no interval. ``pairs`` [scenes, seeds] are the differences of
-    binary outcomes, NaN where an outcome is missing.
+    alone, in seed order, NaN where none of its pairs ran. Bounded outcomes have ``scenes`` too, and
+    with them a score interval in place of the bootstrap's; for new seeds it is widened to Student's
+    t interval over ``per_seed``. Without draws and scenes there is no interval. ``pairs`` [scenes,
+    seeds] are the differences of binary outcomes, NaN where an outcome is missing.
     """
 
     value: float

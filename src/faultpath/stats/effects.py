@@ -1,5 +1,6 @@
 """Contrasts of paired variants: success, means, medians (paper, "Statistical Aggregation")."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -105,7 +106,7 @@ def _mean(
         estimand=SCENES_AND_SEEDS if models else SCENES,
         n_seeds=n_seeds,
         per_seed=tuple(
-            float(scale * total / max(1, count))
+            float(scale * total / count) if count else math.nan
             for total, count in zip(np.nansum(values, axis=0), ran.sum(axis=0), strict=True)
         ),
         draws=scale * sums / (n_scenes * n_seeds),
