@@ -125,7 +125,6 @@ def describe() -> Machine:
 
 
 def main() -> None:
-    """Measure the rows that the command line names, or all of them."""
     parser = argparse.ArgumentParser(prog="benchmarks", description=(__doc__ or "").split("\n")[0])
     parser.add_argument("rows", nargs="*", metavar="ROW", help="these rows, and keep nothing")
     parser.add_argument("--rounds", type=int, default=7)

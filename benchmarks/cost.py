@@ -127,11 +127,6 @@ def judged(scenes: int = JUDGED) -> Side:
     return Side(work)
 
 
-def judged_many() -> Side:
-    """The same with ten times as many trials: what it costs has to grow as they do."""
-    return judged(10 * JUDGED)
-
-
 def many_scenes() -> Side:
     """An audit of the toy in very many scenes, in one process, with its report."""
     text = (ROOT / "examples" / "toy.py").read_text("utf-8")

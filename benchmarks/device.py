@@ -48,7 +48,6 @@ COMMAND = "python -m benchmarks.device"
 
 
 def main() -> None:
-    """Measure, or compare two audits, and keep the figures."""
     parser = argparse.ArgumentParser(prog=COMMAND.removeprefix("python -m "))
     parser.add_argument("--audits", nargs=2, type=Path, metavar=("CPU_RUN", "GPU_RUN"))
     parser.add_argument("--paper", action="store_true", help=f"fly {PAGE} on both devices")

@@ -13,18 +13,9 @@ SUCCESS = {CORRECT: (0.59, 0.6), "observer": (0.6, 0.35), SHARED: (0.4, 0.6)}
 """Under three conditions, of repair and baseline."""
 
 
-def few() -> Side:
-    """The tests of 10,000 scenes; the unit is a scene."""
-    return _tests(10_000)
-
-
-def many() -> Side:
-    """The tests of 100,000 scenes; the unit is a scene."""
-    return _tests(100_000)
-
-
-def _tests(scenes: int) -> Side:
-    """Effects, changes, power and a break-even frequency of one seed under three conditions."""
+def tests(scenes: int) -> Side:
+    """Effects, changes, power and a break-even frequency of one seed under three conditions; the
+    unit is a scene."""
     draws = generator("benchmark-many-scenes", "all", 0)
     hardness = draws.random(scenes)
     outcomes = {

@@ -12,7 +12,6 @@ _A_STEP = {VEHICLE_STEPS: "µs a vehicle and step", LOOP_STEPS: "µs a step"}
 
 
 def summary(record: Record) -> str:
-    """Return a record in one line, for the terminal."""
     if record.ours is None:
         return f"{record.name}: {record.note}"
     against = "" if record.peer is None else f" against {number(record.peer)} ({record.peer_name})"
@@ -41,7 +40,6 @@ def entries(record: Record) -> tuple[str, ...]:
 
 
 def notes(record: Record) -> Iterator[str]:
-    """Yield what is said of a row below the table."""
     if record.note:
         yield record.note
     if record.unit == LOOP_STEPS and record.ours and record.peer:

@@ -44,7 +44,6 @@ def plant(build: Callable[[Vehicle], Plant] = TorchPlant) -> Side:
 
 
 def scenes() -> Sequence[Scene]:
-    """Return a block of the selection library."""
     return load_library("selection").scenes[:SCENES]
 
 

@@ -36,7 +36,6 @@ class Target(_Frozen):
     value: float
 
     def met_by(self, value: float) -> bool:
-        """Return whether a measured value keeps to the bound."""
         return value >= self.value if self.sense == "at least" else value <= self.value
 
 
@@ -88,8 +87,6 @@ def record(
 
 
 class Machine(_Frozen):
-    """The machine and software of the measurements."""
-
     date: str
     processor: str
     cores: int
@@ -102,19 +99,15 @@ class Machine(_Frozen):
 
 
 class Results(_Frozen):
-    """Contents of `results.json`."""
-
     machine: Machine
     records: tuple[Record, ...] = ()
 
 
 def load(path: Path = RESULTS) -> Results:
-    """Read `results.json`, or a file like it."""
     return Results.model_validate_json(path.read_bytes())
 
 
 def stored(path: Path) -> Any:
-    """Read `device.json` or `waits.json`."""
     return json.loads(path.read_text("utf-8"))
 
 

@@ -1,6 +1,6 @@
 """One side of a comparison: work that pyperf times in a process of its own, with one thread.
 
-python -m benchmarks.side MODULE:FUNCTION [pyperf's options]
+python -m benchmarks.side MODULE:FUNCTION[:SCENES] [pyperf's options]
 """
 
 import importlib
@@ -54,9 +54,9 @@ def main() -> None:
     if not args.worker:  # the parent only starts workers
         runner.bench_func(args.side, lambda: None)
         return
-    module, _, function = args.side.partition(":")
+    module, function, *scenes = args.side.split(":")
     with one_thread():
-        side: Side = getattr(importlib.import_module(module), function)()
+        side: Side = getattr(importlib.import_module(module), function)(*map(int, scenes))
         runner.metadata["amount"] = side.amount
         if side.note:
             runner.metadata["note"] = side.note

@@ -44,7 +44,6 @@ class TwoLink:
     rate: Any
 
     def push(self, torque: Any, noise: Any) -> None:
-        """Move by a torque for a control step."""
         (q1, q2), (w1, w2) = self.angle.tolist(), self.rate.tolist()
         tip = (LINK_KG + self.payload_kg) * LENGTH_M
         for _ in range(4):
@@ -63,14 +62,12 @@ class TwoLink:
 
 
 def start(rng: np.random.Generator) -> dict[str, Any]:
-    """Draw payload, goal and disturbance of a scene."""
     goal, disturbance = rng.uniform(-1.0, 1.0, 2), rng.uniform(-2.0, 2.0, 2)
     arm = TwoLink(rng.uniform(0.5, 3.0), goal, disturbance, np.zeros(2), np.zeros(2))
     return _shown(arm)
 
 
 def step(scene: dict[str, Any], torque: Any, rng: np.random.Generator) -> dict[str, Any]:
-    """Move the arm of a scene by a control step."""
     scene["arm"].push(torque, rng.normal(0.0, 0.1, 2))
     return _shown(scene["arm"])
 
@@ -97,7 +94,6 @@ def observer(payload: Any, angle: Any, rate: Any, torque: Any, memory: Any) -> t
 
 
 def controller(payload: Any, angle: Any, rate: Any, goal: Any, unexplained: Any) -> Any:
-    """Return the torque that moves the arm to its goal."""
     inertia, load = dynamics(payload, angle, rate)
     acceleration = GAINS[0] * (goal - angle) - GAINS[1] * rate
     return (inertia @ acceleration[..., None])[..., 0] + load - unexplained

@@ -37,7 +37,6 @@ TESTS = {"make test": "set-up for development, and all tests"}
 
 
 def main() -> None:
-    """Take the steps, and keep what they took."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.waits")
     parser.add_argument("--tests", action="store_true", help="run the tests alone")
     tests = parser.parse_args().tests

@@ -116,10 +116,10 @@ def every_audit() -> Iterator[Audit]:
             effects = audit["effects"]
             # At a module where the fault did not act nothing was tested.
             acted = {n: t for n, t in audit["turns"].items() if effects[n] != effects["correct"]}
-            yield _of_study(title, "latent-camera", fault, repair, effects, acted)
+            yield Audit(title, "latent-camera", fault, repair, _shown(effects), acted)
     for audit in sensors().audits:
-        system, page = "Quadrotor's filter", "state-errors"
-        yield _of_study(system, page, audit.fault, audit.repair, audit.effects, audit.turns)
+        title, page, effects = "Quadrotor's filter", "state-errors", _shown(audit.effects)
+        yield Audit(title, page, audit.fault, audit.repair, effects, audit.turns)
 
 
 def _effect(effect: effects.Effect) -> Effect:
@@ -129,16 +129,8 @@ def _effect(effect: effects.Effect) -> Effect:
     return Effect(value, *ends, 0 if effect.extreme else effect.sign)
 
 
-def _of_study(
-    title: str,
-    page: str,
-    fault: str,
-    repair: str,
-    effects: Mapping[str, Any],
-    turns: Mapping[str, str],
-) -> Audit:
-    shown = {name: Effect(*effect) for name, effect in effects.items()}
-    return Audit(title, page, fault, repair, shown, turns)
+def _shown(effects: Mapping[str, Any]) -> dict[str, Effect]:
+    return {name: Effect(*effect) for name, effect in effects.items()}
 
 
 def between(effects: Iterable[Effect]) -> str:

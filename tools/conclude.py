@@ -10,10 +10,10 @@ from faultpath_paper.pages import PAGES
 from faultpath_paper.reproduction import write_pages
 from faultpath_paper.run import CONCLUSIONS, read_results
 from paper_blocks import PLACE, RUN
+from repeats import points_of
 
 from faultpath.analyses.decide import decide
 from faultpath.analyses.map.analysis import map_analysis
-from faultpath.analyses.map.lattice import UNITS
 from faultpath.analyses.map.model import MapResult
 from faultpath.analyses.model import AuditResult
 from faultpath.analyses.scan.decide import concluded
@@ -78,13 +78,9 @@ def reversal_map(folder: Path) -> MapResult:
     spec = SystemSpec(name=place, options=question.options)
     system = load_system(spec)
     analysis = map_analysis(system, spec, question, library_of(system, facts.library))
-    points = [
-        (round(x / facts.up_to * UNITS), round(y / facts.up_to * UNITS))
-        for x, y in (point.errors for point in before.points)
-    ]
     findings = Deliveries(rows=(), findings=before.findings)
     analysis = replace(analysis, facts=facts)
-    record = analysis.conclude(read_outcomes(folder / OUTCOMES), findings, points)
+    record = analysis.conclude(read_outcomes(folder / OUTCOMES), findings, points_of(before))
     (folder / MAP).write_text(record.model_dump_json(indent=1) + "\n", "utf-8")
     (folder / "table.md").write_text(markdown_blocks(tables(record)) + "\n", "utf-8")
     _reseal(folder)

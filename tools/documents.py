@@ -29,7 +29,8 @@ import schema_files
 import studies
 from blocks import IMAGES, REFERENCE, ROOT, RUNS, Picture, Wrong, copied, figures_of, kind_of, load
 from faultpath_paper import central, facts
-from faultpath_paper.report import terminal, words
+from faultpath_paper.claims import SUBJECTS
+from faultpath_paper.report import words
 from pictures import digest, made_from, make_images, name_of
 from rendering import macros
 
@@ -53,8 +54,8 @@ NAMES = {
     "performance": page,
     "phrases": phrases,
     "runs": run_blocks,
-    "terminal": terminal,
     "studies": studies,
+    "subjects": SUBJECTS,
     "words": words,
 }
 FILTERS = {

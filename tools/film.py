@@ -16,13 +16,6 @@ Frames = Sequence[tuple[float, str]]
 
 SIGNS = {Status.SUCCESS: "M-6 0.5l4 4.5 8 -10", Status.CRASH: "M-5 -5l10 10m0 -10l-10 10"}
 OTHER_SIGN = "M-4.5 -4.5h9v9h-9z"
-CSS = """
-.fig text.clock { font-size: 17px; font-weight: 600; }
-.fig .trail, .fig .sign { fill: none; stroke: var(--side); stroke-width: 3; }
-.fig .trail, .fig .sign { stroke-linecap: round; stroke-linejoin: round; }
-.fig .sign.under { stroke: var(--paper); stroke-width: 7; }
-.fig .ring { fill: none; stroke: var(--side); stroke-width: 2; }
-"""
 _FADE_S = 0.35
 _LINE = 20.0
 """Height of a line of the clock, in pixels."""
@@ -35,7 +28,7 @@ class Film(Svg):
 
     def __init__(self, width: float, height: float, title: str, css: str) -> None:
         super().__init__(width, height, title)
-        self._css = CSS + css
+        self._css = css
         self._motions: dict[str, str] = {}
 
     def times(self, lasts_s: float, slow: float, hold_s: float, still_s: float) -> "Film":

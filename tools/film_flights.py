@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 from blocks import OUTCOMES, REFERENCE, Wrong, load
+from film_halves import STORIES
 from numpy.typing import NDArray
 from pydantic import BaseModel
 from repeats import planned
@@ -23,9 +24,9 @@ from faultpath.run.execution.recheck import deviation
 from faultpath.run.store.folder import read_outcomes
 from faultpath.run.store.tables import TrialAddress
 
-RUN = "quadrotor-L3-decision"
+RUN = STORIES["quadrotor"]["run"]
 FLIGHTS = Path(__file__).with_suffix(".json")
-SHOWN = ("reconstruction", "shared")
+SHOWN = [half["condition"] for half in STORIES["quadrotor"]["halves"]]
 """Conditions of the two halves of the film."""
 
 

@@ -2,13 +2,16 @@
 
 from collections import Counter
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import cache
 from itertools import product
-from typing import NamedTuple
+from pathlib import Path
+from string import Template
+from typing import Any, NamedTuple
 
+import yaml
 from blocks import OUTCOMES, REFERENCE, Picture, Run, Wrong, load
 from film import OTHER_SIGN, SIGNS, Film
+from pydantic import BaseModel
 
 from faultpath.analyses.effects import Effect
 from faultpath.api.replaying import outcomes_at
@@ -24,40 +27,31 @@ TOP, HEAD, FOOT = 34.0, 62.0, 112.0
 """Heights of the legend, of the titles of a half, and of the numbers below its scene."""
 WIDTH = 2 * CARD + GAP
 SIDES = ("baseline", "repair")
-CSS = """
-.fig text.title { font-size: 15px; font-weight: 600; }
-.fig text.name { font-size: 13px; font-weight: 600; }
-.fig .card, .fig .chip { fill: var(--paper); stroke: var(--rule); }
-.fig .chip.hit { fill: var(--faulted-wash); stroke: var(--faulted); }
-.fig .track { fill: var(--faint); }
-.fig .bar { fill: var(--side); }
-"""
 _ROW = 22.0
 _CHIP = 92.0
 
 
-class Half(NamedTuple):
+class Half(BaseModel):
     """One side of a film: its condition, the titles, and each reader with whether it reads wrong
     values."""
 
     condition: str
     over: str
     title: str
-    readers: Mapping[str, bool]
+    readers: dict[str, bool]
 
 
-@dataclass(frozen=True)
-class Story:
+class Story(BaseModel):
     """A scene of a reference run under two conditions, and the words for what happens."""
 
     run: str
     scene: str
     seed: int
     halves: tuple[Half, Half]
-    variants: Mapping[str, str]
+    variants: dict[str, str]
     """What each is, the baseline first."""
     during: str
-    ends: Mapping[Status, str]
+    ends: dict[Status, str]
 
     def trials(self, half: Half) -> dict[str, Outcome]:
         """Return the trials of a half by variant."""
@@ -71,6 +65,14 @@ class Story:
     def longest_s(self) -> float:
         """Time of the trial that lasts longest."""
         return max(trial.time_s for half in self.halves for trial in self.trials(half).values())
+
+
+STORIES = yaml.safe_load(Path(__file__).with_name("films.yaml").read_text("utf-8"))
+
+
+def told(name: str, **scene: Any) -> Story:
+    """Return a story, in a scene where `films.yaml` has none."""
+    return Story(**STORIES[name], **scene)
 
 
 class Pace(NamedTuple):
@@ -94,11 +96,19 @@ def picture(
     story: Story,
     pace: Pace,
     height: float,
-    css: str,
     draw: Callable[[Film, Half, float, float], None],
+    **sizes: str,
 ) -> Picture:
-    """Return a film with its still; `draw` draws a half's scene, of a height, at a left and top."""
-    film = Film(WIDTH, TOP + HEAD + height + FOOT, alternative(story), CSS + css)
+    """Return a film with its still; `draw` draws a half's scene, of a height, at a left and top.
+
+    `sizes` are what the film's styles name.
+    """
+    styles = (
+        path.read_text("utf-8")
+        for path in map(Path(__file__).with_name, ("film.css", f"film_{name}.css"))
+    )
+    css = Template("\n" + "\n".join(styles)).substitute(sizes)
+    film = Film(WIDTH, TOP + HEAD + height + FOOT, alternative(story), css)
     still_s = story.longest_s if pace.still_s is None else pace.still_s
     film.times(story.longest_s, pace.slow, pace.hold_s, still_s)
     legend(film, story)

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 from blocks import REFERENCE, Picture
 from film import Film, Frames
-from film_halves import CARD, PAD, SIDES, Half, Pace, Story, picture
+from film_halves import CARD, PAD, SIDES, Half, Pace, Story, picture, told
 from numpy.typing import NDArray
 
 from faultpath.report.svg import Point, number
@@ -19,8 +19,6 @@ Values = NDArray[np.float64]
 Signals = Mapping[tuple[str, str], Mapping[str, Values]]
 """By condition and variant, and by name: the first component at each control step."""
 
-RUN = "openpilot-nissan-tolerance"
-CORRECT, ALONE, SHARED = "correct", "firmware", "shared"
 DT_S, EVERY = 0.01, 10
 """Control step of the example, and steps from one frame to the next."""
 SCALE, WIDE, TALL, AHEAD = 9.5, CARD - 2 * PAD, 240.0, 0.76
@@ -28,35 +26,7 @@ SCALE, WIDE, TALL, AHEAD = 9.5, CARD - 2 * PAD, 240.0, 0.76
 STRIP = 46.0
 """Height of what shows the messages."""
 LANE_M, KEPT_M, POSTS_M = 3.6, 0.5, 6.0
-CSS = f"""
-.fig .grass {{ fill: var(--wash); }}
-.fig .asphalt {{ fill: none; stroke: var(--rule); stroke-width: {2 * LANE_M * SCALE + 10:g}; }}
-.fig .edge, .fig .middle {{ fill: none; stroke: #fff; stroke-width: 2.5; opacity: .85; }}
-.fig .middle {{ stroke-dasharray: {3 * SCALE:g} {3 * SCALE:g}; }}
-.fig .kept {{ fill: none; stroke: var(--good); stroke-width: {2 * KEPT_M * SCALE:g}; }}
-.fig .kept {{ opacity: .25; }}
-.fig .post {{ fill: var(--soft); opacity: .28; }}
-.fig .trail.baseline {{ stroke-width: 5.5; opacity: .6; }}
-.fig .trail.repair {{ stroke-width: 2; }}
-.fig .hull {{ fill: var(--side); stroke: var(--paper); stroke-width: 1; }}
-.fig .glass {{ fill: var(--paper); opacity: .8; }}
-.fig .passed {{ fill: var(--side); opacity: .45; }}
-.fig .stopped {{ fill: var(--faulted); }}
-"""
-ONE = {"controller": False, "firmware": True}
-BOTH = dict.fromkeys(ONE, True)
-STORY = Story(
-    run=RUN,
-    scene="seed/1011",
-    seed=0,
-    halves=(
-        Half(ALONE, "Speeds that read 5 % too high at", "the safety firmware only", ONE),
-        Half(SHARED, "The same wrong speeds at", "every module that reads them", BOTH),
-    ),
-    variants={"shipped": "the firmware tolerates 1 m/s", "narrow": "it tolerates 0.25 m/s"},
-    during="driving",
-    ends={Status.SUCCESS: "kept its lane", Status.CRASH: "left its lane"},
-)
+STORY = told("openpilot")
 STILL_S = 3.1
 """Just after the car has left its lane, and in view."""
 
@@ -90,7 +60,7 @@ class Road:
 def film() -> Picture:
     """Return the film and its still."""
     signals = signals_of(STORY)
-    clean = signals[CORRECT, next(iter(STORY.variants))]
+    clean = signals["correct", next(iter(STORY.variants))]
     speed = smooth(clean["speed"], 51)
     road = road_of(clean, speed)
 
@@ -114,7 +84,9 @@ def film() -> Picture:
         draw_messages(film, half, signals, left, top + TALL)
 
     pace = Pace(slow=1.0, hold_s=1.2, tick_s=0.1, still_s=STILL_S)
-    return picture("openpilot", STORY, pace, TALL + STRIP, CSS, draw)
+    widths = {"asphalt": 2 * LANE_M * SCALE + 10, "dash": 3 * SCALE, "kept": 2 * KEPT_M * SCALE}
+    sizes = {name: f"{width:g}" for name, width in widths.items()}
+    return picture("openpilot", STORY, pace, TALL + STRIP, draw, **sizes)
 
 
 def signals_of(story: Story) -> Signals:
@@ -123,7 +95,7 @@ def signals_of(story: Story) -> Signals:
         (at.condition, at.variant): {
             signal.name: signal.values[:, 0].astype(np.float64) for signal in signals
         }
-        for at, signals in decode_signals((REFERENCE / RUN / SIGNALS).read_bytes()).items()
+        for at, signals in decode_signals((REFERENCE / story.run / SIGNALS).read_bytes()).items()
         if (at.scene, at.seed) == (story.scene, story.seed)
     }
 

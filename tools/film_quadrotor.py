@@ -9,29 +9,16 @@ import numpy as np
 from blocks import REFERENCE, Picture, Wrong, parsed
 from faultpath_quadrotor.scenes.library import GOAL_RADIUS_M
 from film import Film
-from film_flights import FLIGHTS, RUN, SHOWN, Flights
-from film_halves import CARD, PAD, SIDES, Half, Pace, Story, picture
+from film_flights import FLIGHTS, RUN, Flights
+from film_halves import CARD, PAD, SIDES, Half, Pace, Story, picture, told
 
 from faultpath.report.svg import Point, number
 from faultpath.run.shown import SystemShown
-from faultpath.system import FloorPlan, Status
+from faultpath.system import FloorPlan
 
 WIDE = CARD - 2 * PAD
 ARROWS_M = 1.05
 """Distance between two arrows of the wind."""
-CSS = """
-.fig .floor { fill: var(--wash); }
-.fig .wall { fill: var(--soft); opacity: .75; }
-.fig .room { fill: none; stroke: var(--soft); stroke-width: 3; opacity: .75; }
-.fig .beam { fill: none; stroke: var(--soft); stroke-dasharray: 3 3; }
-.fig .wind { fill: none; stroke: var(--soft); stroke-width: 1.4; stroke-linecap: round; }
-.fig .wind { opacity: .5; }
-.fig .goal { fill: var(--good); fill-opacity: .13; stroke: var(--good); stroke-width: 1.5; }
-.fig .goal { stroke-dasharray: 4 3; }
-.fig .body { fill: var(--side); stroke: var(--paper); stroke-width: 1; }
-.fig .rotor { fill: var(--paper); stroke: var(--side); stroke-width: 1.6; }
-.fig .frame { stroke: var(--side); stroke-width: 2; }
-"""
 REMEDY = "make it with tools/film_flights.py"
 At = Callable[[float, float], Point]
 """Pixels of a place in the room, in metres."""
@@ -64,30 +51,12 @@ def film() -> Picture:
 
     height = scale * (plan.high[1] - plan.low[1])
     pace = Pace(slow=2.0, hold_s=1.7, tick_s=shown.control_dt_s)
-    return picture("quadrotor", story, pace, height, CSS, draw)
+    return picture("quadrotor", story, pace, height, draw)
 
 
 def story_of(flights: Flights) -> Story:
     """Return what the film shows."""
-    alone, shared = SHOWN
-    one = {"wind estimator": True, "predictor": False}
-    both = dict.fromkeys(one, True)
-    halves = (
-        Half(alone, "Wrong mass and thrust at", "the wind estimator only", one),
-        Half(shared, "The same wrong values at", "every module that reads them", both),
-    )
-    return Story(
-        run=RUN,
-        scene=flights.scene,
-        seed=flights.seed,
-        halves=halves,
-        variants={
-            "gru": "the original wind estimator",
-            "gru+dcc": "retrained to tolerate wrong values",
-        },
-        during="flying",
-        ends={Status.SUCCESS: "at the goal", Status.CRASH: "crashed"},
-    )
+    return told("quadrotor", scene=flights.scene, seed=flights.seed)
 
 
 def draw_room(film: Film, plan: FloorPlan, at: At, scale: float) -> None:

@@ -75,11 +75,14 @@ def planned(run: Run) -> tuple[System, Plan]:
         return system, plan_of(analysis, read_outcomes(REFERENCE / run.name / OUTCOMES))
     if not isinstance(run.record, MapResult):
         return system, audit_analysis(system, spec, question, library).plan
-    points = [
-        (round(one / facts.up_to * UNITS), round(other / facts.up_to * UNITS))
-        for one, other in (point.errors for point in run.record.points)
-    ]
-    return system, map_analysis(system, spec, question, library).plan(points)
+    return system, map_analysis(system, spec, question, library).plan(points_of(run.record))
+
+
+def points_of(record: MapResult) -> list[tuple[int, int]]:
+    """Return the points of a map as its analysis counts them."""
+    scale = record.facts.up_to
+    errors = (point.errors for point in record.points)
+    return [(round(x / scale * UNITS), round(y / scale * UNITS)) for x, y in errors]
 
 
 def plan_of(analysis: ScanAnalysis, trials: Trials) -> Plan:

@@ -9,11 +9,12 @@ import os
 import re
 import shutil
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import nbformat
+import yaml
 from blocks import load
 from docutils import nodes
 from myst_parser.parsers.sphinx_ import MystParser
@@ -89,35 +90,17 @@ class NotebookParser(MystParser):
         super().parse(as_markdown(executed(Path(source))), document)
 
 
-SIDE_BAR: Mapping[str, str] = {
-    "Start": "install tutorial concepts faq",
-    "Audit": "audit-your-own-system own-loop gymnasium torch their-code judge scan",
-    "Read results": "reading-a-report statistics reversal-map",
-    "Examples": "gallery quadrotor",
-    "Look up": "faults python api/index performance",
-}
-"""Pages of the side bar, by their heading."""
-BELOW: Mapping[str, str] = {
-    "install": "release-notes releasing",
-    "torch": "repairs",
-    "statistics": "statistics-check",
-    "gallery": "rotorpy do-mpc motulator basilisk wpilib openpilot stable-worldmodel lerobot "
-    "learned-world-model latent-camera notebooks/toy notebooks/gymnasium notebooks/quadrotor",
-    "quadrotor": "reproduction state-errors carry-over bring-your-own-model reference/README",
-    "python": "continuous-integration many-trials",
-    "performance": "design/README",
-    "design/README": "*",
-}
-"""Pages that the side bar folds away below another."""
+_LISTS = yaml.safe_load(Path(__file__).with_name("side_bar.yaml").read_text("utf-8"))
 
 
 def with_contents(app: Sphinx, name: str, source: list[str]) -> None:
     """Say which pages lie below a page; GitHub would show such a list as code."""
     del app
-    lists = SIDE_BAR if name == "index" else {"": BELOW[name]} if name in BELOW else {}
+    lists = _LISTS["side_bar"] if name == "index" else {"": _LISTS["below"].get(name, ())}
     for caption, pages in lists.items():
-        options = [":hidden:", *([f":caption: {caption}"] if caption else []), ":glob:", ""]
-        source[0] += "\n".join(["", "```{toctree}", *options, *pages.split(), "```", ""])
+        if pages:
+            options = [":hidden:", *([f":caption: {caption}"] if caption else []), ":glob:", ""]
+            source[0] += "\n".join(["", "```{toctree}", *options, *pages, "```", ""])
 
 
 def linked(app: Sphinx, tree: nodes.document) -> None:

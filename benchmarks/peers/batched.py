@@ -108,7 +108,6 @@ class BatchModel(nn.Module):
 
 
 def initial() -> Tensor:
-    """Return the first scene's state, `[50]`."""
     readings = planning.inputs()
     state = readings.state
     code = readings["history_code", "latent"]

@@ -12,7 +12,6 @@ from benchmarks.side import Side, check_same
 
 
 def command() -> Side:
-    """`MPPI.command` for one scene."""
     model = batched.BatchModel()
     check_same(batched.positions(model), planning.positions(), 1e-3)
     centre, sigma, low, high = batched.actions()

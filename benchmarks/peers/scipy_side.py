@@ -11,7 +11,6 @@ from benchmarks.side import Side, check_same
 
 
 def percentile() -> Side:
-    """The interval of one effect."""
     one, two = outcomes()
     difference = 100.0 * (one.astype(float) - two.astype(float)).mean(1)
 

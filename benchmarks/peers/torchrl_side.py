@@ -34,8 +34,6 @@ class World(nn.Module):
 
 
 class Environment(ModelBasedEnvBase):
-    """The world as torchrl has environments."""
-
     def __init__(self, world: World) -> None:
         super().__init__(world)
         self.state_spec = Composite(state=Unbounded((batched.STATE,)))
@@ -51,13 +49,11 @@ class Return(nn.Module):
     """Sum of the rewards, where the planner looks for the advantage."""
 
     def forward(self, tensordict: TensorDict) -> TensorDict:
-        """Write the sum at every step."""
         rewards = tensordict["next", "reward"]
         return tensordict.set("advantage", rewards.sum(-2, keepdim=True).expand_as(rewards))
 
 
 def planning_step() -> Side:
-    """`MPPIPlanner.planning` for one scene."""
     model = batched.BatchModel()
     check_same(batched.positions(model), planning.positions(), 1e-3)
     planner = MPPIPlanner(

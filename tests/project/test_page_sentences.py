@@ -13,6 +13,10 @@ import studies
 from blocks import REFERENCE, ROOT
 from comparison import ALONE, MISSED, OPEN, REVERSAL, SAME, SIZE, Effect, verdict
 from documents import BLOCK, BLOCKS, documents
+from faultpath_paper.answers import shipped_ledger
+from faultpath_paper.cells import published_claims
+from faultpath_paper.claims import SUBJECTS
+from faultpath_paper.report.words import is_non_detection
 from state_design import Audit, Design
 from studies import sensor_sentences, sensors
 
@@ -226,3 +230,29 @@ def test_a_study_without_workers_is_refused_in_a_sentence(capsys):
     with pytest.raises(SystemExit, match="2"):
         state_study.main(["--workers", "0"])
     assert "--workers 0: give at least one" in capsys.readouterr().err
+
+
+LEDGER = shipped_ledger()
+
+
+def test_every_claim_stands_once_and_is_marked_where_no_detection_confirms_it() -> None:
+    text = BLOCKS["paper:ledger"]()
+    assert sorted(re.findall(r"C\d\d", text)) == [claim.id for claim in LEDGER.claims]
+    marked = sorted(re.findall(r"(C\d\d)\\\*", text))
+    assert marked == [claim.id for claim in LEDGER.claims if is_non_detection(claim)]
+    assert "C02" in marked
+    assert "C05" not in marked
+
+
+def test_every_claim_has_one_subject_and_its_figures_add_up() -> None:
+    every = [claim for claims in SUBJECTS.values() for claim in claims]
+    assert sorted(every) == [claim.id for claim in published_claims()]
+    rows = [row.split("|")[2:-1] for row in BLOCKS["paper:sizes"]().splitlines()[2:]]
+    *subjects, last = ([int(cell) for cell in row] for row in rows)
+    assert [sum(column) for column in zip(*subjects, strict=True)] == last
+    assert last[0] >= sum(last[1:]) > 0
+
+
+def test_what_did_not_come_out_is_told_by_the_part_that_decides() -> None:
+    told = re.findall(r"^- \*\*(C\d\d), \w+\.\*\* .+: .+$", BLOCKS["paper:apart"](), re.M)
+    assert told == [c.id for c in LEDGER.claims if c.verdict != "confirmed"]

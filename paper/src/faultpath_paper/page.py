@@ -174,3 +174,8 @@ class Page:
     def build(self, results: Results) -> Built:
         """Return the page's tables and figures as a run fills them; never raises `NotRun`."""
         return tuple(part.build(results) for part in self.parts)
+
+
+def page_of(name: str, *rows: TableRow | Columns) -> Page:
+    """Return the page of one table, which has its name."""
+    return Page(name, (table(name, *rows),))

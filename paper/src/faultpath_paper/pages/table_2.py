@@ -4,7 +4,7 @@ from faultpath.report.sentences import wording
 from faultpath_paper.cells import SEEDS, Cell, calibration, of_seed, published
 from faultpath_paper.entries import EntryGroup, centimetres
 from faultpath_paper.evidence.table import Measurement
-from faultpath_paper.page import Page, Rows, TableRow, rates, table
+from faultpath_paper.page import Rows, TableRow, page_of, rates
 from faultpath_paper.pages.grid import Grid
 from faultpath_paper.pages.table_1 import COMMON, STILL
 from faultpath_paper.quantities.windows import quantile
@@ -53,22 +53,15 @@ def _tail(error: float) -> EntryGroup:
     )
 
 
-PAGE = Page(
+PAGE = page_of(
     "table-2",
-    (
-        table(
-            "table-2",
-            *_matched(*PAIRS[0]),
-            *_matched(*PAIRS[1]),
-            TableRow("WM-A seed 0: prediction and control"),
-            TableRow(
-                "Error, median (cm)",
-                tuple(map(centimetres, map(error_under, ERRORS), _FIRST["error_cm"])),
-            ),
-            TableRow("Error, 90th percentile (cm)", tuple(map(_tail, ERRORS))),
-            rates(
-                "Success (%)", (of_seed(cell("wm-a", error)) for error in ERRORS), _FIRST["success"]
-            ),
-        ),
+    *_matched(*PAIRS[0]),
+    *_matched(*PAIRS[1]),
+    TableRow("WM-A seed 0: prediction and control"),
+    TableRow(
+        "Error, median (cm)",
+        tuple(map(centimetres, map(error_under, ERRORS), _FIRST["error_cm"])),
     ),
+    TableRow("Error, 90th percentile (cm)", tuple(map(_tail, ERRORS))),
+    rates("Success (%)", (of_seed(cell("wm-a", error)) for error in ERRORS), _FIRST["success"]),
 )

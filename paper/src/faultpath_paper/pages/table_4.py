@@ -6,7 +6,7 @@ from typing import Any
 from faultpath.report.sentences import wording
 from faultpath_paper.cells import SEEDS, Cell, Setting, calibration, published
 from faultpath_paper.entries import EntryGroup, of_quantity
-from faultpath_paper.page import Columns, Page, TableRow, table
+from faultpath_paper.page import Columns, TableRow, page_of
 from faultpath_paper.pages.grid import Grid
 from faultpath_paper.quantities.differences import Effect, combined, succeeded, terminal_distance
 from faultpath_paper.results import Quantity
@@ -76,27 +76,22 @@ def _farther(condition: str) -> EntryGroup:
     return _shown(quantity, cells, FARTHER[condition], 2)
 
 
-PAGE = Page(
+PAGE = page_of(
     "table-4",
-    (
-        table(
-            "table-4",
-            TableRow("Success (%)"),
-            *map(GRID.rates, METHODS),
-            *GRID.differences("gru+dcc", "gru", ", success (pp)"),
-            *GRID.differences("dob", "gru", ", success (pp)"),
-            *GRID.differences("dob", "gru+dcc", ", success (pp)"),
-            last_column(
-                "DOB minus GRU, shared minus reconstruction-only (pp)",
-                _changed("dob", "gru", succeeded, GRID.figures["DOB_GRU_interaction_pp"]),
-                "Score interval",
-            ),
-            TableRow("Terminal distance, secondary, GRU+DCC minus GRU (m)"),
-            Columns(("Mean difference", "95 % interval"), tuple(map(_farther, CONDITIONS))),
-            last_column(
-                "Shared minus reconstruction-only (m)",
-                _changed("gru+dcc", "gru", terminal_distance, FARTHER["change"], 2),
-            ),
-        ),
+    TableRow("Success (%)"),
+    *map(GRID.rates, METHODS),
+    *GRID.differences("gru+dcc", "gru", ", success (pp)"),
+    *GRID.differences("dob", "gru", ", success (pp)"),
+    *GRID.differences("dob", "gru+dcc", ", success (pp)"),
+    last_column(
+        "DOB minus GRU, shared minus reconstruction-only (pp)",
+        _changed("dob", "gru", succeeded, GRID.figures["DOB_GRU_interaction_pp"]),
+        "Score interval",
+    ),
+    TableRow("Terminal distance, secondary, GRU+DCC minus GRU (m)"),
+    Columns(("Mean difference", "95 % interval"), tuple(map(_farther, CONDITIONS))),
+    last_column(
+        "Shared minus reconstruction-only (m)",
+        _changed("gru+dcc", "gru", terminal_distance, FARTHER["change"], 2),
     ),
 )

@@ -4,7 +4,7 @@ from faultpath.report.sentences import wording
 from faultpath.stats.breakeven import break_even
 from faultpath_paper.cells import published
 from faultpath_paper.entries import EntryGroup, Made, decided
-from faultpath_paper.page import Page, TableRow, table
+from faultpath_paper.page import TableRow, page_of
 from faultpath_paper.pages import table_2, table_4
 from faultpath_paper.quantities.differences import Crossing, Repair, crossing
 from faultpath_paper.results import Results
@@ -64,15 +64,10 @@ def _crossing(tradeoff: Crossing) -> str:
     return f"{tradeoff.value:.0f}{ends}"
 
 
-PAGE = Page(
+PAGE = page_of(
     "table-5",
-    (
-        table(
-            "table-5",
-            _row("WM-A", "WM-A"),
-            _row("WM-U", "WM-U"),
-            _row("GRU: reconstruction only", "GRU/reconstruction-only"),
-            _row("GRU: shared with predictor", "GRU/shared"),
-        ),
-    ),
+    _row("WM-A", "WM-A"),
+    _row("WM-U", "WM-U"),
+    _row("GRU: reconstruction only", "GRU/reconstruction-only"),
+    _row("GRU: shared with predictor", "GRU/shared"),
 )
