@@ -68,6 +68,7 @@ LINES = [
     (["fly"], ["'fly'", "`faultpath --help`"]),
     (["audit"], ["system", "`faultpath audit --help`"]),
     (["audit", TOY], ["--baseline"]),
+    (["audit", TOY, "--out"], ["'--out' requires an argument", "`faultpath audit --help`"]),
     (["report", "nowhere"], ["nowhere"]),
     (["report", "a\u2028b"], ["\\u2028"]),
     (["report", ".", "--out", "a.html"], ["--out", "two or more"]),

@@ -69,6 +69,14 @@ def test_a_system_that_does_not_load(code, words, tmp_path):
     assert not (tmp_path / "run").exists()
 
 
+def test_a_place_is_named_where_the_working_directory_was_removed(tmp_path, monkeypatch):
+    system, place = _system(tmp_path, "1 / 0  # here")
+    (gone := tmp_path / "gone").mkdir()
+    monkeypatch.chdir(gone)
+    gone.rmdir()
+    faultpath("trace", system).refused(f"{tmp_path}/{place}", "ZeroDivisionError")
+
+
 @pytest.mark.parametrize("source", [b"x = 1\0", b"(" * 5000], ids=["NUL", "deep"])
 def test_a_file_that_is_no_python(source, tmp_path):
     (tmp_path / "mine.py").write_bytes(source)

@@ -37,6 +37,11 @@ def test_a_misspelt_option_is_answered_with_the_one_that_was_meant(line, meant):
     assert "Possible" not in faultpath(*line).refused(f"did you mean {meant}?")
 
 
+def test_an_option_of_a_system_before_its_name_is_told_its_place():
+    ended = faultpath("trace", "--gear", "low", "mine.py:create")
+    ended.refused("no option --gear", "those of a system stand after its name")
+
+
 @pytest.mark.parametrize("verb", ["audit", "trace"])
 def test_help_shows_the_options_of_the_system_that_is_named(verb):
     shown = faultpath(verb, "quadrotor", "--help").out

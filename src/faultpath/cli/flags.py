@@ -146,13 +146,13 @@ def with_system_flags(
         arguments = arguments[: arguments.index("--")]
     helps = "--help" in arguments
     flags = {part.partition("=")[0] for part in arguments if part.startswith("--")} - own
-    if not arguments or arguments[0].startswith("-") or not (flags or helps):
+    if not (flags or helps) or arguments[0] == "--help":
         return verb
     from faultpath.run.registry import system_options
 
-    system, options = arguments[0], ()
+    system, options = "" if arguments[0].startswith("-") else arguments[0], ()
     try:
-        options = system_options(system)
+        options = system_options(system) if system else ()
     except (Exception, SystemExit):
         if not helps:
             raise
@@ -161,9 +161,12 @@ def with_system_flags(
     for unknown in sorted(flags - {*added}) if not helps else ():
         close = get_close_matches(unknown, [*own, *added], n=1)
         hint = f"did you mean {close[0]}? " if close else ""
+        takes = "those of a system stand after its name"
+        if system:
+            takes = f"system {system!r} takes {', '.join(added) or 'none of its own'}"
         raise UserError(
             f"there is no option {unknown}: {hint}`faultpath {name} --help` shows those of the "
-            f"command, and system {system!r} takes {', '.join(added) or 'none of its own'}."
+            f"command, and {takes}."
         )
 
     @wraps(verb)

@@ -107,7 +107,11 @@ class Verb(TyperCommand):
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Parse as any command does; `UserError` for an option given twice, or for no number."""
         if args:
-            values, _, options = self.make_parser(ctx).parse_args(list(args))
+            try:
+                values, _, options = self.make_parser(ctx).parse_args(list(args))
+            except typer.TyperException as error:
+                vars(error)["ctx"] = ctx  # which names the command to ask for help
+                raise
             for option in options:
                 if not isinstance(option, TyperOption) or option.multiple:
                     continue

@@ -137,7 +137,10 @@ def whole_in(text: str) -> int:
 
 def near(file: str) -> str:
     """Return a path relative to the working folder where it lies below, else in full."""
-    path = os.path.relpath(file)
+    try:
+        path = os.path.relpath(file)
+    except FileNotFoundError:  # the working folder was removed
+        return file
     return file if path.startswith(os.pardir) else path
 
 
