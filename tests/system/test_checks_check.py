@@ -12,9 +12,10 @@ from written import written
 
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.loop import Taps
-from faultpath.report.sentences.checks import describe, remedy
+from faultpath.report.sentences.checks import describe, describe_read, remedy, summary
 from faultpath.run.check.judging import ENOUGH, diverged, other_names, without_room
-from faultpath.run.check.results import Diverged, NoRoom, TwoNames
+from faultpath.run.check.results import Checked, Diverged, Ends, Faulted, NoRoom, Reads, TwoNames
+from faultpath.run.check.tracing import NeverRead
 from faultpath.system import ComposedSystem, Outcome, Status, writes
 
 INDEPENDENCE = "scene independence"
@@ -140,6 +141,19 @@ def test_a_baseline_that_always_ends_alike_leaves_an_audit_no_room():
     assert without_room({"bare": ends(ENOUGH - 1)}) == ()  # too few to say so
     for odd in (Status.CRASH, Status.FAILED):
         assert without_room({"bare": ends(ENOUGH, odd)}) == ()
+
+
+def test_one_of_a_kind_is_counted_as_one():
+    """It was "1 trials", "1 injection points" and "the first 1 steps"."""
+    ends = Ends(successes=(("bare", 1, 1),), under_fault=1)
+    assert summary(Checked("trials", ends)).endswith("; 1 trial ended under the fault")
+    assert summary(Checked("taps", Reads(1))) == "1 injection point declared and read"
+    one = Faulted(taps=1, altered=1, elsewhere=0)
+    assert summary(Checked("faults", one)) == (
+        "1 injection point, each faulted alone: 1 reading altered, none elsewhere"
+    )
+    never = NeverRead(variant="bare", channel="gain", reader="one.gain", steps=1)
+    assert "but in the first step it did not" in describe_read(never)
 
 
 def test_a_check_sees_what_diverged():
