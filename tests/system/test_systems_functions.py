@@ -6,7 +6,10 @@ from gym_toys import SCENES, Steer, functions, trials
 from libraries import LIBRARIES
 
 from faultpath.core.errors import SystemMistake
+from faultpath.faults import parse_fault
 from faultpath.interface import transitive_readers
+from faultpath.run.attempt import attempt
+from faultpath.run.plan import Treatment
 from faultpath.system import ComposedSystem, Status, writes
 from faultpath.system.observed import hashed
 
@@ -139,6 +142,17 @@ def test_the_hash_of_a_state_that_holds_an_object_does_not_depend_on_places() ->
 def test_the_hash_of_a_state_is_of_all_its_bits(to) -> None:
     one, two = to(np.array([1.0, 2.0])), to(np.array([1.0, 2.0 + 1e-12]))
     assert hashed({"at": one}) == hashed({"at": to(np.array([1.0, 2.0]))}) != hashed({"at": two})
+
+
+def test_a_real_number_that_becomes_whole_stays_real_alone_as_beside_others():
+    def stopped(state, push, rng):
+        return state | {"at": max(0, state["at"] - 1.0), "clock": state["clock"] + 1}
+
+    plant = functions(start, stopped, steps=4, observes={"place": "at", "clock": "clock"})
+    built = ComposedSystem("cart", plant, {"only": [Steer()]}, UNITS)
+    shifted = parse_fault("place:offset=0.3", built.interface, {}, 0.1)
+    done = attempt(built, Treatment(variant="only", faults=shifted), SCENES[:1])
+    assert done.outcomes[0].altered_steps == 4
 
 
 def test_a_key_that_the_state_has_not_is_told_with_those_that_it_has():

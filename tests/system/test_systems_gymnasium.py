@@ -150,6 +150,20 @@ def sloped(env, rng):
     env.unwrapped.slope = rng.uniform(-0.1, 0.1)
 
 
+def test_a_value_of_the_set_up_stays_as_it_was_when_the_model_changes():
+    def loaded(env, rng):
+        env.unwrapped.load = np.ones(2)
+        return {"slope": env.unwrapped.load}
+
+    def lose(env, rng, step):
+        env.unwrapped.load[:] = 0.0
+
+    episodes = []
+    done = plant(setup=loaded, on_step=lose, succeeded=lambda e: bool(episodes.append(e)))
+    trials(system(done, units={"slope": "kg"}))
+    assert [episode["slope"].min() for episode in episodes] == [1.0] * len(SCENES)
+
+
 def test_modules_begin_with_what_is_observed_after_the_set_up():
     built = plant(Observed, setup=moved, observation=lambda env: env.unwrapped._get_obs())
     world = built.world(SCENES[0], 0)

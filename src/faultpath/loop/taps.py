@@ -96,6 +96,9 @@ class Taps:
         for fault in faults:
             for reader in fault.readers:
                 self._named.setdefault((fault.channel, reader), []).append(fault.describe())
+        self._add(faults, dt_s, seed)
+
+    def _add(self, faults: Iterable[Fault], dt_s: float, seed: int) -> None:
         for reader, corruption in corruptions(faults, self._scenes, dt_s, seed):
             fault = corruption.fault
             if (fault.channel, reader) not in self._taps:

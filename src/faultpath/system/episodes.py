@@ -147,7 +147,9 @@ class EpisodePlant(Plant):
         sample = self.world(f"{SCENE}0", 0)
         self.facts = tuple(sample.facts)
         self.senses = (*self._observes, *self.facts)
+        self._real: dict[str, Any] = {}  # types of the sources that begin as real numbers
         sensed = self._sensed([sample], [sample.observation])
+        self._real = {name: v.dtype for name, v in sensed.items() if v.dtype.kind == "f"}
         self.shapes = {name: np.shape(value)[1:] for name, value in sensed.items()}
         self._lines([sample])  # else what is wrong with it shows after all trials
         sample.close()
@@ -163,6 +165,10 @@ class EpisodePlant(Plant):
         sources = select(self._observes, observations, self.observed)
         for name in self.facts:
             sources[name] = np.array([np.asarray(world.facts[name]) for world in worlds])
+        for name, dtype in self._real.items():
+            # `max(0, speed)` is a whole number in some scenes, and real where others stand beside.
+            if sources[name].dtype.kind in "iu":
+                sources[name] = sources[name].astype(dtype)
         return sources
 
     @override
@@ -170,10 +176,8 @@ class EpisodePlant(Plant):
         worlds, n = [self.world(name, batch.seed) for name in batch.scenes], len(batch.scenes)
         for name, world in zip(batch.scenes, worlds, strict=True):
             if set(world.facts) != set(self.facts):
-                raise SystemMistake(
-                    f"the set-up of scene '{name}' returned {listed(world.facts)}, and that of "
-                    f"'{SCENE}0' {listed(self.facts)}: return the same names for each scene"
-                )
+                both = f"{listed(world.facts)}, and that of '{SCENE}0' {listed(self.facts)}"
+                raise SystemMistake(f"the set-up of scene '{name}' returned {both}: name the same")
         observations = [world.observation for world in worlds]
         sensed = self._sensed(worlds, observations)
         return _Batch(

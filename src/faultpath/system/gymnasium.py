@@ -166,6 +166,8 @@ class GymnasiumPlant(EpisodePlant):
                 ) from None
             return env.step(row[()])
 
+        # Copied, since a part of the model may change in the episode.
+        facts = {name: np.array(value) for name, value in facts.items()}
         return SceneInstance(observation, facts, initial, disturbance, step, lambda: env, env.close)
 
     def _make(self) -> Any:
