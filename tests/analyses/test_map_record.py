@@ -13,6 +13,7 @@ from faultpath.analyses.map.decide import Errors, lattice_weights
 from faultpath.analyses.map.lattice import COARSE, SHOWN, UNITS, lattice, surface_weights
 from faultpath.analyses.map.model import MapResult
 from faultpath.analyses.map.surface import Combined, Differences
+from faultpath.report.map import map_picture
 from faultpath.report.sentences import words
 from faultpath.report.sentences.maps import size_label
 
@@ -134,8 +135,18 @@ def test_where_one_version_is_ahead_at_all_pairs_nothing_is_said_of_others() -> 
 def test_no_error_has_no_sign() -> None:
     facts = record(alike(8)).facts.model_copy(update={"relative": False, "unit": "m"})
     assert [size_label(facts, size) for size in (0.0, 0.2, -0.2)] == ["0 m", "+0.2 m", "−0.2 m"]
+    assert size_label(facts.model_copy(update={"unit": "m/s^2"}), 1.0) == "+1 m/s²"
     for unit in ("", "1"):
         assert size_label(facts.model_copy(update={"unit": unit}), 1.0) == "+1"
+
+
+def test_long_numbers_stand_beside_the_frame_of_a_map() -> None:
+    made = record(alike(8), relative=False, unit="m/s^2", up_to=123456.789)
+    drawn = map_picture(made).render()
+    ends = re.findall(r'class="small soft" x="([\d.]+)" y="[\d.]+" text-anchor="end">', drawn)
+    assert len(ends) == 5
+    assert len(set(ends)) == 1, "none was moved in, onto the frame"
+    assert "error at the observer, m/s²" in drawn
 
 
 @pytest.mark.parametrize("name", ["sizes", "difference", "sign"])

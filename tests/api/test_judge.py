@@ -165,7 +165,7 @@ def test_a_task_with_all_of_its_scenes_is_one_of_few(tmp_path: Path) -> None:
     assert run.record.scenes == 3
     assert len(run.record.effects[0].won) == 30  # though many of them came out alike
     assert "new tasks like these" in " ".join(run.sentences)
-    assert run.headline.startswith("Too few scenes")
+    assert run.headline.startswith("Too few tasks")
     by_scene = judged(file, tmp_path / "scenes")
     assert any("--cluster task" in finding for finding in by_scene.words.findings)
 

@@ -14,7 +14,7 @@ from faultpath.report.effects import (
 )
 from faultpath.report.inputs import ReportInput
 from faultpath.report.pair_grid import pair_grid, pair_key
-from faultpath.report.svg import covering, shortened, text_width
+from faultpath.report.svg import Svg, covering, shortened, text_width
 from faultpath.report.taps import fork_panel, forks
 from faultpath.stats.estimate import BreakEven, Region
 
@@ -128,3 +128,11 @@ def test_the_counts_of_a_grid_with_many_pairs_fit_into_its_width() -> None:
         assert len(texts) == lines
         assert max(text_width(text, 11) for text in texts) <= 390
         assert sum(text.count(str(most)) for text in texts) == len(PairKind)
+
+
+def test_bold_letters_count_as_wider() -> None:
+    """A long title stuck out of its picture, cut as if its letters were light."""
+    svg = Svg(100, 20, "")
+    svg.text(0, 9, "n" * 60, "head", room=100)
+    (cut,) = re.findall(">(n+…)<", svg.render())
+    assert text_width(cut, 13) < 100 / 1.09

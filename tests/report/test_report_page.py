@@ -111,7 +111,7 @@ def test_what_is_the_same_under_every_condition_is_no_column(
     page = Page(report_page(make(void=void, n_scenes=80)))
     heads = next(row for row in page.rows if "95 % interval" in row)
     assert ("Scenes" in heads, "Void pairs" in heads) == (not scenes, not scenes)
-    said = "Scenes, under every condition: 80 (scenes in which both versions have a trial)."
+    said = "Scenes, under every condition: 80 (those in which both versions have a trial)."
     assert (said in page.text) == scenes
 
 

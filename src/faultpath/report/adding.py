@@ -11,7 +11,16 @@ from faultpath.analyses.model import CORRECT, where
 from faultpath.analyses.pairs import Pair, by_scene, choose
 from faultpath.report.inputs import ReportInput
 from faultpath.report.sentences import wording
-from faultpath.report.svg import Axis, Point, Svg, covering, draw_axes, text_width, tick_label
+from faultpath.report.svg import (
+    BOLD,
+    Axis,
+    Point,
+    Svg,
+    covering,
+    draw_axes,
+    text_width,
+    tick_label,
+)
 from faultpath.run.store.signals import TOGETHER, Signal
 from faultpath.run.store.tables import TrialAddress
 from faultpath.system.outcome import Outcome, Status
@@ -154,7 +163,7 @@ def adding_panels(shown: Adding) -> list[Markup]:
             y = upward.at(top + _PLOT, top)
             svg.text(0, top - 10, variant.role, "small soft")
             svg.text(54, top - 10, variant.name, f"bold {variant.role}", room=_NAME)
-            left = 54 + min(_NAME, text_width(variant.name, 12)) + 8
+            left = 54 + min(_NAME, text_width(variant.name, 12 * BOLD)) + 8
             svg.text(_WIDTH, top - 10, variant.ended, "small soft", "end", room=_WIDTH - left)
             draw_axes(svg, x, y, 4, x.ticks(4) if variant is variants[-1] else ())
             svg.text(_LEFT - 6, y.start + 14, shown.unit, "small soft", "end")

@@ -105,8 +105,12 @@ def map_picture(result: MapResult) -> Svg:
     points."""
     question, facts, side = result.question, result.facts, _SIDE
     title = f"Reversal map of {facts.system}: {question.repair} against {question.baseline}"
-    svg = Svg(_LEFT + side + _RIGHT, _TOP + side + 48, title, headline(result))
-    x = Axis(-facts.up_to, facts.up_to, _LEFT, _LEFT + side)
+    # A relative error is given as a share, and read as percent.
+    reach, unit = (100 * facts.up_to, "%") if facts.relative else (facts.up_to, facts.unit)
+    ticks = (-reach, -reach / 2, 0.0, reach / 2, reach)
+    left = max(_LEFT, *(text_width(tick_label(tick), 11) + 10 for tick in ticks))
+    svg = Svg(left + side + _RIGHT, _TOP + side + 48, title, headline(result))
+    x = Axis(-facts.up_to, facts.up_to, left, left + side)
     y = Axis(-facts.up_to, facts.up_to, _TOP + side, _TOP)
     hatch = svg.hatch("baseline", "range baseline", 6)
     _key(svg, result, hatch)
@@ -119,26 +123,25 @@ def map_picture(result: MapResult) -> Svg:
     svg.line((x(0.0), y.start), (x(0.0), y.end), "zero")
     svg.line((x.start, y(0.0)), (x.end, y(0.0)), "zero")
     svg.line((x.start, y.start), (x.end, y.end), "zero")
-    for name, left, up, anchor in (
+    for name, at, up, anchor in (
         (first, x.end + 6, y(0.0) - 3, "start"),
         (second, x(0.0), y.end - 20, "middle"),
     ):
-        svg.text(left, up, name, "bold", anchor, room=_RIGHT - 8)
-        svg.text(left, up + 14, "alone", "bold", anchor)
+        svg.text(at, up, name, "bold", anchor, room=_RIGHT - 8)
+        svg.text(at, up + 14, "alone", "bold", anchor)
     svg.text(x.end + 6, y.end + 4, "shared", "bold")
     svg.path(" ".join(_zero(result, x, y)), "range")
     for point in result.points:
         at = x(point.errors[0]), y(point.errors[1])
         svg.circle(at, 2.6, "dot" if point.sign else "dot open", tip=at_point(result, point))
-    # A relative error is given as a share, and read as percent.
-    reach, unit = (100 * facts.up_to, "%") if facts.relative else (facts.up_to, facts.unit)
     x, y = Axis(-reach, reach, x.start, x.end), Axis(-reach, reach, y.start, y.end)
-    for tick in (-reach, -reach / 2, 0.0, reach / 2, reach):
+    for tick in ticks:
         svg.line((x(tick), y.start), (x(tick), y.start + 4), "axis")
         svg.text(x(tick), y.start + 17, tick_label(tick), "small soft", "middle")
         svg.line((x.start - 4, y(tick)), (x.start, y(tick)), "axis")
         svg.text(x.start - 8, y(tick) + 4, tick_label(tick), "small soft", "end")
-    across, upward = (f"error at the {at}, {unit}".removesuffix(", 1") for at in facts.modules)
+    measured = f", {wording.unit(unit)}" if unit not in ("", "1") else ""
+    across, upward = (f"error at the {name}{measured}" for name in facts.modules)
     svg.text(x(0.0), y.start + 36, across, "small soft", "middle", room=svg.width)
     svg.text(0, y.end - 38, upward, "small soft", room=svg.width)
     return svg

@@ -22,8 +22,10 @@ _NARROW = dict.fromkeys('ft()[]/-r "!', 415) | dict.fromkeys("cksz", 580)
 _DIGITS = dict.fromkeys("0123456789", 640)  # they have one width, and a wide one in some fonts
 _WIDE = dict.fromkeys("mwMW%@→−+=<>≤≥…", 1000) | dict.fromkeys("ABCDEFGHKNOPQRSTUVXYZ&", 790)
 _ADVANCE = _THIN | _NARROW | _DIGITS | _WIDE
-_SIZES = {"small": 11.0, "head": 13.0}
-"""Sizes of text by its class, in pixels, as `svg.css` has them; 12 otherwise."""
+BOLD = 1.1
+"""How much wider bold letters are."""
+_SIZES = {"small": 11.0, "head": 13.0 * BOLD, "bold": 12.0 * BOLD}
+"""Sizes of text by its class, in pixels, as `svg.css` has them and as wide; 12 otherwise."""
 
 
 def text_width(text: str, size: float) -> float:

@@ -6,15 +6,15 @@ from faultpath.analyses.map.model import Flip, MapFacts, MapPoint, MapResult
 from faultpath.analyses.model import SHARED
 from faultpath.core.text import series
 from faultpath.report.sentences.phrases import NO_RESULT, scenes_like_these
-from faultpath.report.sentences.wording import MINUS, interval, signed
+from faultpath.report.sentences.wording import MINUS, interval, signed, unit
 from faultpath.stats.power import MIN_SCENES
 
 
 def size_label(facts: MapFacts, size: float) -> str:
     """Return the size of an error: `+20 %`, or `+0.2 m`."""
-    shown, unit = (100 * size, "%") if facts.relative else (size, facts.unit)
+    shown, measured = (100 * size, "%") if facts.relative else (size, unit(facts.unit))
     number = f"{shown:+.3g}".replace("-", MINUS) if size else "0"
-    return f"{number} {unit}".removesuffix(" 1").rstrip()
+    return f"{number} {measured}".removesuffix(" 1").rstrip()
 
 
 def headline(result: MapResult) -> str:
