@@ -151,6 +151,15 @@ def test_a_file_is_no_folder_for_a_run(command: str, tmp_path: Path) -> None:
     assert place.read_text() == "mine"
 
 
+@pytest.fixture(scope="module")
+def runs(finished: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """A finished run of each command."""
+    place = tmp_path_factory.mktemp("runs")
+    for command in ("map", "scan"):
+        assert faultpath(*COMMANDS[command], "--out", place / command).status == 0
+    return {"audit": finished, "map": place / "map", "scan": place / "scan"}
+
+
 QUESTIONS = COMMANDS | {
     "scan of another error": [*COMMANDS["scan"], "--fault", "velocity:offset=0.1"],
     "map of another fault": ["velocity" if a == "gain" else a for a in COMMANDS["map"]],
@@ -170,12 +179,12 @@ QUESTIONS = COMMANDS | {
         ("scan", "scan with another seed"),
     ],
 )
-def test_a_run_does_not_go_on_in_one_of_another_question(first: str, second: str) -> None:
+def test_a_run_does_not_go_on_in_one_of_another_question(
+    first: str, second: str, runs: dict[str, Path]
+) -> None:
     """The variants of a map may be others from round to round, but a map is no audit."""
-    results()
-    assert faultpath(*QUESTIONS[first], "--out", "run").status == 0
-    before = {path: path.read_bytes() for path in Path("run").iterdir() if path.is_file()}
-    faultpath(*QUESTIONS[second], "--out", "run").refused(
+    before = {path: path.read_bytes() for path in runs[first].iterdir() if path.is_file()}
+    faultpath(*QUESTIONS[second], "--out", runs[first]).refused(
         "holds another run, with another question"
     )
     assert all(path.read_bytes() == data for path, data in before.items())

@@ -14,11 +14,15 @@ OWN = {"toy", "dock", "map-toy", "scan-toy"}
 are run as a whole by `test_readme_numbers`."""
 
 
-@pytest.fixture
-def thinned(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Take every fourth trial of a sample: flights of one vehicle are much alike, and take time."""
+def thin(monkeypatch: pytest.MonkeyPatch, count: int) -> None:
+    """Take about so many trials of a sample: those of one system are much alike, and take time."""
     whole = repeats.sample
-    monkeypatch.setattr(repeats, "sample", lambda *arguments: whole(*arguments)[::4])
+
+    def few(*arguments):
+        sample = whole(*arguments)
+        return sample[:: max(1, len(sample) // count)]
+
+    monkeypatch.setattr(repeats, "sample", few)
 
 
 @pytest.mark.parametrize("name", ["map-toy", "scan-toy"])
@@ -28,7 +32,8 @@ def test_a_sample_of_a_run_comes_out_as_its_page_says(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", [n for n in HERE if "quadrotor" in n])
-def test_other_flights_come_out_as_their_page_says(name: str, thinned: None) -> None:
+def test_other_flights_come_out_as_their_page_says(name: str, monkeypatch) -> None:
+    thin(monkeypatch, 2)
     run = load(name)
     result = repeats.repeat(run)
     assert run.repeats is not None
@@ -40,17 +45,18 @@ def test_other_flights_come_out_as_their_page_says(name: str, thinned: None) -> 
 
 
 @pytest.mark.parametrize("name", [n for n in HERE if n not in OWN and "quadrotor" not in n])
-def test_a_sample_of_a_run_on_libraries_that_choose_by_processor_is_near(name: str) -> None:
+def test_a_sample_of_a_run_on_libraries_that_choose_by_processor_is_near(
+    name: str, monkeypatch
+) -> None:
     """Where NumPy or torch choose by processor, single trials of a chaotic system may part."""
+    thin(monkeypatch, 8)
     run, result = load(name), repeats.repeat(load(name))
     assert run.repeats is not None
-    assert result.sampled == run.repeats.sampled
-    assert result.near >= 0.75 * run.repeats.near
+    assert result.near / result.sampled >= 0.75 * run.repeats.near / run.repeats.sampled
 
 
-def test_a_changed_constant_of_the_plant_is_named_by_the_trial_that_differs(
-    monkeypatch, thinned
-) -> None:
+def test_a_changed_constant_of_the_plant_is_named_by_the_trial_that_differs(monkeypatch) -> None:
+    thin(monkeypatch, 2)
     compiled = pytest.importorskip("faultpath_quadrotor.plant.compiled")
     monkeypatch.setattr(compiled, "GRAVITY_MPS2", compiled.GRAVITY_MPS2 * 1.0001)
     result = repeats.repeat(load("quadrotor-L3"))
