@@ -15,6 +15,7 @@ from faultpath_quadrotor import device as devices
 from faultpath_quadrotor import models, native, system
 from faultpath_quadrotor.options import QuadrotorOptions
 from faultpath_quadrotor.plant.module import ACTION
+from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.system import Quadrotor
 from flights import HELD_OUT, fault, fly, quadrotor, trace
 from simulated_gpu import GPU, SimulatedGPU, simulated_gpu
@@ -49,7 +50,9 @@ class Placed(DeliveryListener):
 
 @pytest.fixture
 def gpu(monkeypatch: pytest.MonkeyPatch) -> Iterator[SimulatedGPU]:
-    """A simulated GPU that the program takes for one of CUDA."""
+    """A simulated GPU that the program takes for one of CUDA; plans look four steps ahead."""
+    near = PLATFORM.planner.sampler.model_copy(update={"horizon": 4})
+    monkeypatch.setattr(QuadrotorOptions, "sampling", near)
     monkeypatch.setattr(QuadrotorOptions, "place", GPU)
     monkeypatch.setattr(arrays, "_PINNING", {GPU.type})
     with simulated_gpu() as simulated:
