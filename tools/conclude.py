@@ -6,9 +6,8 @@ from pathlib import Path
 
 from blocks import PROVENANCE, REFERENCE, ROOT, load, parsed
 from faultpath_paper.claims import again
-from faultpath_paper.pages import PAGES
 from faultpath_paper.reproduction import write_pages
-from faultpath_paper.run import CONCLUSIONS, read_results
+from faultpath_paper.run import CONCLUSIONS, built, read_results
 from paper_blocks import PLACE, RUN
 from repeats import points_of
 
@@ -24,7 +23,7 @@ from faultpath.api.replaying import shown_first
 from faultpath.api.runs import open_run
 from faultpath.report.map import tables
 from faultpath.report.sentences import words
-from faultpath.report.tables import Table, markdown_blocks
+from faultpath.report.tables import markdown_blocks
 from faultpath.run.deliveries import Deliveries
 from faultpath.run.plan import SystemSpec
 from faultpath.run.provenance import RunProvenance, seal
@@ -116,14 +115,8 @@ def scan(folder: Path) -> ScanResult:
 def paper(folder: Path, target: Path) -> list[str]:
     """Conclude a reproduction; return the claims whose answers changed, with both answers."""
     results, old = read_results(folder)
-    built = [part for page in PAGES for part in page.build(results)]
-    record = old.model_copy(
-        update={
-            "ledger": again(results, old.ledger),
-            "tables": tuple(part for part in built if isinstance(part, Table)),
-            "figures": tuple(part for part in built if not isinstance(part, Table)),
-        }
-    )
+    update = {"ledger": again(results, old.ledger), **built(results)}
+    record = old.model_copy(update=update)
     (folder / CONCLUSIONS).write_text(record.model_dump_json(indent=1) + "\n", "utf-8")
     write_pages(target, record, _reseal(folder))
     answers = {claim.id: claim.verdict for claim in old.ledger.claims}

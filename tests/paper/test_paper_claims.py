@@ -7,6 +7,7 @@ from faultpath_paper.answers import ClaimVerdict
 from faultpath_paper.cells import Cell, published_claims
 from faultpath_paper.claims import STATEMENTS, evaluate
 from faultpath_paper.claims.statement import answered, verdict
+from faultpath_paper.claims.terms import statement
 from faultpath_paper.pages import table_1, table_4
 from faultpath_paper.quantities.differences import together
 from faultpath_paper.results import Results
@@ -91,3 +92,16 @@ def test_no_rule_knows_what_the_paper_reports(answers: Answers, published_run: R
     other = claim.model_copy(update={"paper": "69 -> 0"})
     found = verdict(other, STATEMENTS[claim.id], published_run)
     assert found.parts == answers[claim.id].parts
+
+
+@pytest.mark.parametrize(
+    ("entry", "mistake"),
+    [
+        ({"success": ["table-9 gru shared", "table-4 gru shared"]}, "'table-9 gru shared' is no"),
+        ({"success": ["table-4 gru", "table-4 gru shared"]}, "'table-4 gru' is no term"),
+        ({"failure": ["table-4 gru shared"]}, "'failure: .* is no quantity"),
+    ],
+)
+def test_a_statement_about_what_there_is_not_is_refused(entry, mistake) -> None:
+    with pytest.raises(ValueError, match=mistake):
+        statement("it is significantly above 0", entry)

@@ -1,9 +1,10 @@
 """A reproduction from start to end: run, measure, conclude, and save the conclusions."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import write_text
@@ -121,7 +122,6 @@ def measure_all(
 def conclude(chosen: ChosenPages, results: Results) -> Reproduction:
     """Evaluate pages and claims."""
     library = chosen.system.library(HELD_OUT)
-    built = [part for page in chosen.pages for part in page.build(results)]
     return Reproduction(
         profile=chosen.profile.name,
         ledger=ledger(
@@ -132,11 +132,19 @@ def conclude(chosen: ChosenPages, results: Results) -> Reproduction:
             chosen.profile.seeds,
             only_run=not chosen.whole,
         ),
-        tables=tuple(part for part in built if isinstance(part, Table)),
-        figures=tuple(part for part in built if isinstance(part, Sweep)),
+        **built(results, chosen.pages),
         trials=len(results.trials),
         failed_trials=int(results.trials.failed.sum()),
     )
+
+
+def built(results: Results, pages: Iterable[Page] = PAGES) -> dict[str, Any]:
+    """Return the tables and figures of pages as a run fills them."""
+    parts = [part for page in pages for part in page.build(results)]
+    return {
+        "tables": tuple(part for part in parts if isinstance(part, Table)),
+        "figures": tuple(part for part in parts if isinstance(part, Sweep)),
+    }
 
 
 def save(folder: Path, flown: Flown, results: Results, record: Reproduction) -> RunResult:
