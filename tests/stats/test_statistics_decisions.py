@@ -11,7 +11,7 @@ from scipy.stats import binomtest, ttest_1samp
 
 from faultpath.stats.contrast import Contrast, change
 from faultpath.stats.decisions import decide_family, turn, with_test
-from faultpath.stats.effects import mean_effect, success_rate
+from faultpath.stats.effects import mean_effect, success_effect, success_rate
 from faultpath.stats.estimate import PairedTest
 from faultpath.stats.power import fewest_scenes
 from faultpath.stats.resamples import Resamples
