@@ -87,11 +87,18 @@ class OverwritingLine(Line):
         return replace(later, x=state.x)
 
 
+class LateLine(Line):
+    """Moves by the order of the step before, which it reads after the present one is written."""
+
+    reads, reads_past = frozenset(), frozenset({Port("action", "motor")})
+
+
 @pytest.mark.parametrize("planner", [Planner, Overwriting])
 def test_a_port_of_the_past_gets_the_step_before_and_first_what_was_before(planner) -> None:
     observer = Guess()
-    execute((observer, planner()))
+    execute((observer, planner()), plant=LateLine())
     assert [now[0] for now in observer.executed] == [-1, 0, 1, 2, 3, 4, 5, 6]
+    assert [now[0] for now in observer.seen] == [1, 0, 0, 1, 3, 6, 10, 15]
 
 
 @pytest.mark.parametrize(

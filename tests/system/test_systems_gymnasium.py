@@ -65,6 +65,17 @@ def test_a_discrete_action_of_which_a_module_reads_the_past_passes_the_check():
     assert not faultpath.check(built, scenes=2, workers=0, progress=False).failures
 
 
+def test_a_choice_may_be_a_real_number_that_is_whole():
+    chosen = writes("push", of=dict)(lambda _, place: 1 if place < 0 else 0)
+    chosen.name = "chosen"
+    done = attempt(
+        system(plant(Keyed, observes={"place": ("at", 0)}), [chosen]),
+        Treatment(variant="only"),
+        SCENES,
+    )
+    assert isinstance(done, Done)
+
+
 class Parts(Walk):
     """The same, with its observation in parts and an action of small whole numbers."""
 

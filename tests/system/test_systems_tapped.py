@@ -89,6 +89,15 @@ def test_an_ended_scene_is_not_asked_any_more():
     assert outputs["seen"].tolist() == [1.0, 6.0]
 
 
+def test_a_number_is_real_whether_or_not_python_makes_it_whole():
+    module = writes("push", of=SimpleNamespace)(lambda _, speed: max(0, speed))
+    outputs, _ = module.step(
+        Inputs("module", 0, delivered(speed=("speed", [-1.0])), {}),
+        module.begin(Batch(("a",), 0, 0.1)),
+    )
+    assert (outputs["push"].tolist(), outputs["push"].dtype) == ([0.0], np.float64)
+
+
 def test_a_mapping_is_delivered_however_it_is_read():
     seen = {}
 

@@ -150,7 +150,7 @@ class GymnasiumPlant(EpisodePlant):
                 raise SystemMistake(
                     f"the environment takes actions of {space}: only arrays can be given"
                 )
-            if np.issubdtype(space.dtype, np.integer) and action.dtype.kind not in "biu":
+            if np.issubdtype(space.dtype, np.integer) and np.any(action % 1):
                 raise SystemMistake(
                     f"the environment takes whole numbers, {space}, and its action is of "
                     f"{action.dtype}: give integers"

@@ -185,7 +185,8 @@ class FunctionModule(Module):
             value = self._function(objects, **arguments)
             if value is None:
                 raise self._returned_nothing()
-            scene.last = np.array(value)
+            # `max(0, push)` is a whole number in some scenes, and real where others stand beside.
+            scene.last = np.array(float(value) if type(value) is int else value)
         return scene
 
     @override
