@@ -157,7 +157,6 @@ def test_without_trials_the_sources_are_ranked_and_nothing_is_written(tmp_path: 
     [
         ("map", {"spread": "wide"}, ("--spread", "'wide'")),
         ("map", {"mean": "0.1,x"}, ("--mean", "'0.1,x'")),
-        ("map", {"against": "controller,,observer"}, ("--against", "empty name")),
         ("scan", {"scenes": "many"}, ("--scenes", "'many'")),
     ],
 )
