@@ -5,9 +5,17 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import faultpath
+
 Successes = Mapping[str, Sequence[bool]]
 """By variant, scene by scene."""
 HEADER = "variant,scene,seed,condition,success,initial\n"
+
+
+def judged(results: object, folder: Any, **more: Any) -> faultpath.Run:
+    """Ask which of the versions `old` and `new` is better."""
+    question = {"baseline": "old", "repair": "new", "folder": folder, "progress": False} | more
+    return faultpath.judge(results, **question)  # pyright: ignore[reportArgumentType] - mistakes too
 
 
 def table(path: Path, conditions: Mapping[str, Successes]) -> Path:

@@ -88,7 +88,7 @@ faultpath_quadrotor.plant.module.CONTROL_STEPS = 8
 scene = system.library("selection").scenes[0].id
 assert isinstance(attempt(system, Treatment(variant="zero-wind"), [scene]), Done)
 faultpath.audit(
-    TOY, baseline="calibrated", repair="blind", fault="gain:scale=0.6", library="carts", scenes=8,
+    TOY, baseline="calibrated", repair="blind", fault="gain:scale=0.6", library="carts", scenes=2,
     workers=0, progress=False,
 )
 after = state()

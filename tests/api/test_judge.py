@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 import yaml
-from judged_files import HEADER, Successes, inspect_log, lerobot, lm_eval, table
+from judged_files import HEADER, Successes, inspect_log, judged, lerobot, lm_eval, table
 from toy_audits import AUDIT, ROOT, TOY
 
 import faultpath
-from faultpath import Run, UserError
+from faultpath import UserError
 from faultpath.analyses.model import AS_RUN, SHARED
 from faultpath.report.html import report_page
 from faultpath.run.store.tables import encode_outcomes
@@ -23,11 +23,6 @@ WON: Successes = {
 }
 WINS = sum(b and not a for a, b in zip(*WON.values(), strict=True))
 LOSSES = sum(a and not b for a, b in zip(*WON.values(), strict=True))
-
-
-def judged(results: object, folder: Path, **more: Any) -> Run:
-    question = {"baseline": "old", "repair": "new", "folder": folder, "progress": False} | more
-    return faultpath.judge(results, **question)  # pyright: ignore[reportArgumentType] - mistakes too
 
 
 def test_an_audits_own_outcomes_are_decided_as_the_audit(tmp_path: Path) -> None:

@@ -13,9 +13,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 import yaml
-from judged_files import HEADER, inspect_log, samples
+from judged_files import HEADER, inspect_log, judged, samples
 
-import faultpath
 from faultpath import UserError
 from faultpath.core.files.parquet import Unreadable, read_rows, read_table
 
@@ -23,14 +22,9 @@ WON = [n % 3 > 0 for n in range(12)]
 LM_EVAL = "samples_gsm8k_2026-01-02T03-04-05.678901.jsonl"
 
 
-def judged(results: object, tmp_path: Path, **more: Any) -> faultpath.Run:
-    question = {"baseline": "old", "repair": "new", "folder": tmp_path / "run", "progress": False}
-    return faultpath.judge(results, **(question | more))  # pyright: ignore[reportArgumentType] - mistakes too
-
-
 def refused(results: object, tmp_path: Path, **more: Any) -> str:
     with pytest.raises(UserError) as caught:
-        judged(results, tmp_path, **more)
+        judged(results, tmp_path / "run", **more)
     assert "\n" not in str(caught.value)
     assert not (tmp_path / "run").exists()
     return str(caught.value)
@@ -108,7 +102,7 @@ def test_lines_of_json_end_at_line_feeds_alone(separator: str, tmp_path: Path) -
     if separator < " ":  # JSON wants these escaped
         lines = [line.replace(separator, f"\\u{ord(separator):04x}") for line in lines]
     (tmp_path / "a.jsonl").write_bytes("\r\n".join(lines).encode())
-    assert judged(tmp_path / "a.jsonl", tmp_path).record.scenes == 12
+    assert judged(tmp_path / "a.jsonl", tmp_path / "run").record.scenes == 12
 
 
 def test_a_label_that_contradicts_the_file_is_refused(tmp_path: Path) -> None:
@@ -120,13 +114,14 @@ def test_a_label_that_contradicts_the_file_is_refused(tmp_path: Path) -> None:
     assert "line 2: the file says variant 'old' and the command line 'new'" in sentence
     sentence = refused([f"old@shared={old}", f"new@shared={new}"], tmp_path)
     assert "the file says condition 'nominal' and the command line 'shared'" in sentence
-    assert judged([f"old={old}", f"new@nominal={new}"], tmp_path).record.effects[0].sign == 1
+    run = judged([f"old={old}", f"new@nominal={new}"], tmp_path / "run")
+    assert run.record.effects[0].sign == 1
 
 
 def test_a_label_names_the_variant_of_a_model_that_is_no_variant(tmp_path: Path) -> None:
     logs = [inspect_log(tmp_path / variant, "gpt", WON) for variant in ("a", "b")]
     labelled = [f"old={logs[0]}", f"new={logs[1]}"]
-    assert judged(labelled, tmp_path).record.question.repair == "new"
+    assert judged(labelled, tmp_path / "run").record.question.repair == "new"
     logs = [inspect_log(tmp_path / f"{variant}-named", variant, WON) for variant in ("old", "new")]
     sentence = refused([f"new={logs[0]}", f"old={logs[1]}"], tmp_path / "other")
     assert "the file says variant 'old' and the command line 'new'" in sentence
@@ -162,7 +157,8 @@ def test_packed_logs_are_read_by_their_package(
         return SimpleNamespace(eval=about, samples=[Sample(**each) for each in samples(WON)])
 
     reading(monkeypatch, read)
-    run = judged([packed(tmp_path / f"{variant}.eval") for variant in ("old", "new")], tmp_path)
+    logs = [packed(tmp_path / f"{variant}.eval") for variant in ("old", "new")]
+    run = judged(logs, tmp_path / "run")
     assert run.record.scenes == len(WON)
     assert run.record.facts.pairing == "hashes"
 
@@ -240,4 +236,4 @@ def test_names_that_are_no_text_are_a_damaged_table(tmp_path: Path) -> None:
 )
 def test_what_is_no_path_is_refused(results: object, folder: Any, says: str) -> None:
     with pytest.raises(UserError, match=says):
-        judged(results, Path(), folder=folder)
+        judged(results, folder)

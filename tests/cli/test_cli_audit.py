@@ -27,31 +27,27 @@ SCENES = 40
 
 
 @pytest.fixture(scope="module")
-def toy_run(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def first(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Ended]:
+    """A run folder, and how the audit that made it ended."""
     folder = tmp_path_factory.mktemp("toy") / "run"
-    with pytest.MonkeyPatch.context() as patch:
-        patch.chdir(ROOT)
-        ended = again(folder)
+    ended = again(folder)
     assert ended.status == 0, ended.err
     assert str(folder / "report.html") in ended.out
-    return folder
+    return folder, ended
 
 
 @pytest.fixture
-def run(toy_run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A copy of that run, to damage."""
-    monkeypatch.chdir(ROOT)
-    return Path(shutil.copytree(toy_run, tmp_path / "run"))
+def run(first: tuple[Path, Ended]) -> Path:
+    return first[0]
 
 
-def again(folder: Path, *arguments: object, **options: object) -> Ended:
-    question = {"scenes": SCENES, "out": folder, "system": "examples/toy.py:create"} | options
-    return audit(*arguments, **question)
+def again(folder: Path, *arguments: object) -> Ended:
+    return audit(*arguments, scenes=SCENES, out=folder)
 
 
-def test_an_audit_leaves_its_files_and_shows_the_reversal(toy_run):
-    assert {condition.name for condition in toy_run.iterdir()} >= FILES
-    record = open_run(toy_run).record
+def test_an_audit_leaves_its_files_and_shows_the_reversal(run):
+    assert {condition.name for condition in run.iterdir()} >= FILES
+    record = open_run(run).record
     assert [condition.name for condition in record.conditions] == [
         "correct",
         "controller",
@@ -61,7 +57,7 @@ def test_an_audit_leaves_its_files_and_shows_the_reversal(toy_run):
     assert {change.isolated: change.turn for change in record.changes}["observer"] == "reversal"
     signs = [effect.sign for effect in record.effects if effect.condition in ("observer", SHARED)]
     assert signs == [1, -1]
-    recorded = pq.read_table(toy_run / "signals.parquet").to_pydict()
+    recorded = pq.read_table(run / "signals.parquet").to_pydict()
     assert {"blind"} <= set(recorded["variant"])
     assert {SHARED} <= set(recorded["condition"])
 
@@ -82,12 +78,13 @@ def test_a_second_time_everything_is_kept_and_json_is_all_of_the_standard_output
     assert json.loads((run / "provenance.json").read_text())["blocks_computed"] == 0
 
 
-def test_progress_and_notices_stay_out_of_the_standard_output(tmp_path):
-    first, second = (audit(scenes=SCENES, out=tmp_path / "run") for _ in range(2))
-    assert first.out == second.out
-    assert first.out.startswith("Do not choose by the fault at the observer alone")
-    assert "Running: 320 of 320 trials" in first.err
-    assert "Recording signals: " in first.err
+def test_progress_and_notices_stay_out_of_the_standard_output(first):
+    folder, ended = first
+    second = again(folder)
+    assert ended.out == second.out
+    assert ended.out.startswith("Do not choose by the fault at the observer alone")
+    assert "Running: 320 of 320 trials" in ended.err
+    assert "Recording signals: " in ended.err
     assert second.err.startswith("Kept 320 of 320 trials")
 
 

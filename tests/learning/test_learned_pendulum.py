@@ -3,6 +3,7 @@
 import runpy
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -64,5 +65,5 @@ def test_its_fits_are_matched_and_audited(
     data = {name.rpartition("/")[2] for name in run.provenance.code.data}
     assert data == {path.name for path in Path(weights).iterdir()}
     assert len(data) == 4
-    shipped = faultpath.load_system(file)
+    shipped: Any = faultpath.load_system(file)
     assert {len(shipped.modules(name, 0)) for name in shipped.variants} == {modules}

@@ -114,8 +114,6 @@ def audited(folder: Path, *profiles: Profile, **question: Any) -> AuditResult:
             folder=folder,
             **question,
         )
-        for run in runs:
-            run.report()
     finally:
         sys.setprofile(None)
     return runs[-1].record

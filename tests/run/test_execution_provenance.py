@@ -39,9 +39,9 @@ def test_provenance_tells_the_run_its_repository_and_every_file_that_flew(tmp_pa
     mine = Mine(tmp_path / "mine")
 
     def told(name: str):
-        result = run_plan(mine.plan(), tmp_path / name, workers=1)
+        result = run_plan(mine.plan(), tmp_path / name, workers=0)
         started = datetime.now(UTC)
-        return run_provenance(tmp_path / name, [], result, started, ["faultpath"], local(1))
+        return run_provenance(tmp_path / name, [], result, started, ["faultpath"], local(0))
 
     untracked = told("untracked")
     assert (untracked.code.system_commit, untracked.code.system_dirty) == (None, None)

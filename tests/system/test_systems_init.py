@@ -45,6 +45,7 @@ def test_the_audit_that_a_template_suggests_shows_a_reversal(kind, tmp_path, mon
     assert decided["observer"] > 0 > decided["shared"]
 
 
+@pytest.mark.usefixtures("without_pages")
 def test_a_single_library_is_taken_and_named_where_none_is_asked_for(tmp_path, monkeypatch, caplog):
     monkeypatch.chdir(tmp_path)
     file, _ = write_system("my_rover", "numpy", tmp_path)
