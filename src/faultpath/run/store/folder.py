@@ -3,7 +3,7 @@
 import hashlib
 import json
 from collections.abc import Generator, Iterable, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -152,8 +152,9 @@ class RunFolder:
 
     def load_failure(self, key: str) -> str:
         """Return what is known about the failed trials of a block; empty without any."""
-        path = self.failures / f"{key}.txt"
-        return path.read_text("utf-8", errors="replace") if path.exists() else ""
+        with suppress(FileNotFoundError):
+            return contents(self.failures / f"{key}.txt").decode(errors="replace")
+        return ""
 
     def save_tables(self, trials: Trials, deliveries: Deliveries) -> str:
         """Write what was assembled and return the SHA-256 of the outcomes."""
