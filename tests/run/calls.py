@@ -61,6 +61,8 @@ def leave(how: str) -> object:
     match how:
         case "kill":
             os.kill(os.getpid(), signal.SIGKILL)
+        case "nameless":
+            os.kill(os.getpid(), signal.SIGRTMIN + 1)
         case "exit":
             sys.exit(3)
         case "_exit":

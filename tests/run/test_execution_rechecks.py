@@ -13,7 +13,7 @@ from weighed import READERS, ToySystem
 from faultpath.core.errors import Stopped
 from faultpath.loop import Reading
 from faultpath.report.sentences.findings import describe
-from faultpath.run.deliveries import Deliveries
+from faultpath.run.deliveries import Deliveries, unproven
 from faultpath.run.execution.recheck import SAMPLE, Rechecks
 from faultpath.run.execution.runner import run_plan
 from faultpath.run.work.executor import Lost
@@ -197,6 +197,16 @@ def test_a_reader_that_never_reads_is_named(tmp_path):
     assert describe(finding).startswith(
         "Variant 'deaf' declares that observer.balance reads 'mass', but it"
     )
+
+
+def test_hashes_are_compared_until_two_differ():
+    def met():
+        yield from (("s0", ("i", "d", "n")), ("s0", ("i", "d", "n")), ("s1", ("i", "d", "m")))
+        raise AssertionError
+
+    assert unproven(met()) == ()
+    assert unproven([("s0", ("i", "d", "n"))] * 2) == ()
+    assert unproven((scene, ("i", "d", "n")) for scene in SCENES)[0].scenes == len(SCENES)
 
 
 def test_failed_trials_are_not_drawn(tmp_path):

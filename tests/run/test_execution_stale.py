@@ -189,3 +189,23 @@ def test_code_that_does_not_overwrites_nothing_and_names_a_trial(file, old, new,
     where = "(correct inputs, seed 0, "
     for part in (f"changed since: {edited.name}", where, "'s0", differs, "choose a new one"):
         assert part in str(refused.value)
+
+
+def test_a_finished_run_that_stopped_early_counts_too_and_takes_no_trial_of_other_code(
+    mine, tmp_path
+):
+    def run(scenes: int) -> str:
+        result = run_plan(
+            mine.plan().model_copy(update={"scenes_per_analysis": 2}),
+            tmp_path / "run",
+            workers=1,
+            stop=lambda trials: len({trial.outcome.scene for trial in trials}) >= scenes,
+        )
+        run_provenance(tmp_path / "run", [], result, datetime.now(UTC), ["again"], local(1))
+        return result.outcomes_sha256
+
+    first = run(4)
+    mine.file.write_text(mine.file.read_text() + "# a word\n")
+    assert run(4) == first
+    with pytest.raises(UserError, match=r"other code than this.*my\.py"):
+        run(8)

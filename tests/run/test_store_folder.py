@@ -1,6 +1,7 @@
 """A run folder: what it holds, what it refuses, how it heals."""
 
 import json
+import os
 from dataclasses import replace
 from pathlib import Path
 
@@ -161,6 +162,13 @@ def test_a_folder_that_cannot_be_made_is_refused():
         folder.open(_manifest(), _unexpected),
     ):
         pass
+
+
+def test_a_pipe_in_place_of_a_traceback_is_not_waited_for(folder):
+    assert folder.load_failure("k") == ""
+    os.mkfifo(folder.failures / "k.txt")
+    with pytest.raises(OSError, match="it is a pipe"):
+        folder.load_failure("k")
 
 
 def test_tables_that_cannot_be_read_say_so(folder, tmp_path):

@@ -4,6 +4,8 @@ import pytest
 from checked import LOOPS, ROOT, check, failed
 
 from faultpath.core.errors import SystemMistake, UserError
+from faultpath.run.check.blocks import RecordedBlock, coarsest
+from faultpath.run.check.reads import Read
 
 
 @pytest.mark.parametrize(
@@ -91,3 +93,12 @@ def test_scenes_are_drawn_from_the_whole_library():
 def test_scenes_that_share_an_index_are_refused():
     with pytest.raises(SystemMistake, match="gives scenes 'w0' and 'w1' the index 0: number its"):
         check(broken="same index")
+
+
+def test_readings_in_bfloat16_are_recorded_with_their_precision():
+    torch = pytest.importorskip("torch")
+    read = Read(0, "range", "pilot.approach", "laser", 0, ("a", "b"))
+    value = torch.tensor([1.0, 2.5], dtype=torch.bfloat16)
+    read.take(value, 2 * value)
+    assert (read.low, read.high, read.altered) == (1.0, 2.5, 2)
+    assert coarsest(RecordedBlock(reads=(read,))) == torch.finfo(torch.bfloat16).eps

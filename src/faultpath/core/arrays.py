@@ -194,7 +194,9 @@ def to_numpy(array: Any) -> HostArray:
     if type(array) is np.ndarray:
         return array
     if _is_torch(array):
-        return np.asarray(array.detach().cpu())
+        host = array.detach().cpu()
+        # NumPy has no bfloat16, each number of which is one in single precision too.
+        return np.asarray(host.float() if str(host.dtype) == "torch.bfloat16" else host)
     return np.asarray(array)
 
 

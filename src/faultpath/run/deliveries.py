@@ -85,8 +85,10 @@ def unproven(met: Iterable[tuple[str, tuple[str, ...]]]) -> tuple[Unproven, ...]
 
     `met` are scenes of trials with the hashes that these carry.
     """
-    pairs = set(met)
-    scenes, hashes = {scene for scene, _ in pairs}, {hashes for _, hashes in pairs}
-    if len(scenes) < 2 or len(hashes) > 1:
-        return ()
-    return (Unproven(scenes=len(scenes), hashes=hashes.pop()),)
+    scenes, first = set[str](), tuple[str, ...]()
+    for scene, hashes in met:
+        first = first or hashes
+        if hashes != first:  # mostly at once: what all trials met would take much memory
+            return ()
+        scenes.add(scene)
+    return (Unproven(scenes=len(scenes), hashes=first),) if len(scenes) > 1 else ()

@@ -41,6 +41,8 @@ _MISTAKES: dict[str, tuple[type[Exception], ...]] = {
     "data files": (UndeclaredFile,),
 }
 """Errors by the check that reports them; any other error keeps trials from their end."""
+_BFLOAT16 = 2.0**-7
+"""Relative spacing of a kind of number that NumPy does not have."""
 TRIALS = "trials end"
 UNDER = "under the fault: "
 """Begins why a variant was run under the user's fault; its condition follows."""
@@ -189,8 +191,10 @@ def run_block(system: System, block: BlockSpec) -> RecordedBlock:
 
 def coarsest(run: RecordedBlock) -> float:
     """Return the relative spacing of the coarsest numbers that were read."""
-    kinds = {read.dtype for read in run.reads}
-    return max((float(np.finfo(k).eps) for k in kinds if k.startswith("float")), default=0.0)
+    kinds = {read.dtype for read in run.reads if "float" in read.dtype}
+    return max(
+        (_BFLOAT16 if k == "bfloat16" else float(np.finfo(k).eps) for k in kinds), default=0.0
+    )
 
 
 def gap_of(first: RecordedBlock, again: RecordedBlock) -> float:

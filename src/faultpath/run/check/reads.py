@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from typing_extensions import override
 
-from faultpath.core.arrays import HostArray, to_numpy
+from faultpath.core.arrays import Array, to_numpy
 from faultpath.loop import DeliveryListener, Query, Reading, Tap
 
 
@@ -58,9 +58,10 @@ class Read:
         """Number of scenes in which the reader got something else than the source held."""
         return sum(clean != got for clean, got in zip(self.clean, self.got, strict=True))
 
-    def take(self, clean: HostArray, got: HostArray) -> None:
+    def take(self, value: Array, delivered: Array) -> None:
         """Take in a value and what the reader got of it."""
-        self.dtype = str(clean.dtype)
+        self.dtype = str(value.dtype).removeprefix("torch.")
+        clean, got = to_numpy(value), to_numpy(delivered)
         numbers = clean.astype(np.float64).reshape(len(clean), -1)
         finite = np.isfinite(numbers)
         if not finite.all():
@@ -100,7 +101,7 @@ class ReadLog(DeliveryListener):
         read = self._reads[key] = Read(*key, reading.source, reading.step, self._scenes)
         if not isinstance(reading.value, Query):
             tap.check_shape(reading.value)
-            read.take(to_numpy(reading.value), to_numpy(got))
+            read.take(reading.value, got)
 
     @override
     def answered(
@@ -108,7 +109,7 @@ class ReadLog(DeliveryListener):
     ) -> None:
         read = self._reads[step, tap.channel, tap.reader]
         read.requests += 1
-        read.take(to_numpy(query.value(answer)), to_numpy(query.value(got)))
+        read.take(query.value(answer), query.value(got))
 
     def reads(self) -> tuple[Read, ...]:
         """Return all reads, in the order in which they happened."""

@@ -18,7 +18,7 @@ from faultpath.run.execution.state import Failure, RunState, Stop
 from faultpath.run.findings import Finding, Recheck
 from faultpath.run.plan import Plan, Task, TaskQueue, Unit, check_rows, units_of
 from faultpath.run.registry import load_system
-from faultpath.run.store.folder import Manifest, RunFolder
+from faultpath.run.store.folder import Manifest, RunFolder, check_same
 from faultpath.run.trials import Trials
 from faultpath.run.work.executor import Executor, Failed, Progress
 from faultpath.run.work.processes import local
@@ -96,7 +96,7 @@ def run_plan(
     built = Built.of(system, plan.system, plan.library)
     built.check_files()
     library, code = built.library, built.code
-    manifest = Manifest(
+    manifest = mine = Manifest(
         faultpath_version=__version__,
         code=code.state,
         library_hash=library.content_hash,
@@ -109,14 +109,20 @@ def run_plan(
             work = partial(dispatch, workforce, built, _attempted, limit_s=time_limit_s)
             # A finished run of other code counts as it is once a sample of it repeats: else a
             # changed message would have all of its trials run again.
-            stored = _units(plan, built, earlier) if earlier else ()
-            if earlier and (blocks := run.finished((unit.key, unit.scenes) for unit in stored)):
-                manifest, units = earlier, stored
-                changed = named(earlier.code.changed(code.state)) or "faultpath"
-                notice(repeat(blocks, units, run, work, changed))
+            if earlier:
+                stored = _units(plan, built, earlier)
+                keys, may_stop = ((unit.key, unit.scenes) for unit in stored), stop is not None
+                if blocks := run.finished(keys, may_stop and plan.scenes_per_analysis > 0):
+                    manifest, units = earlier, stored
+                    changed = named(earlier.code.changed(code.state)) or "faultpath"
+                    made = [unit for unit in units if unit.key in blocks]
+                    notice(repeat(blocks, made, run, work, changed))
             state = RunState(plan, library, units, run, stop)
             with run.open(manifest, notice, shared):
-                queue = TaskQueue(state.resume(notice), plan.scenes_per_analysis > 0)
+                missing = state.resume(notice)
+                if manifest is not mine and missing and not state.enough():
+                    check_same(run.path, manifest, mine)  # which refuses trials of both codes
+                queue = TaskQueue(missing, plan.scenes_per_analysis > 0)
                 progress(state.progress())
                 work(
                     lambda worker: None if state.enough() else queue.take(worker),

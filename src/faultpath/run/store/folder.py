@@ -3,7 +3,7 @@
 import hashlib
 import json
 from collections.abc import Generator, Iterable, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -132,13 +132,21 @@ class RunFolder:
         # A process killed between writing and tidying leaves two; the later one failed less often.
         return min(shards, key=lambda shard: sum(o.failed for o in shard.outcomes), default=None)
 
-    def finished(self, units: Iterable[tuple[str, Sequence[str]]]) -> dict[str, Done]:
-        """Return the blocks of a finished run; none where one is missing or has failures."""
-        files = self.list_shards()
-        try:
-            blocks = {key: _read_shard(files[key][0], key, scenes) for key, scenes in units}
-        except (KeyError, Unreadable):
-            return {}
+    def finished(
+        self, units: Iterable[tuple[str, Sequence[str]]], may_stop: bool
+    ) -> dict[str, Done]:
+        """Return the blocks of a finished run; none where one is missing or has failures.
+
+        A run that `may_stop` has those up to the first that is missing.
+        """
+        files, blocks = self.list_shards(), dict[str, Done]()
+        for key, scenes in units:
+            if key not in files and may_stop:
+                break
+            try:
+                blocks[key] = _read_shard(files[key][0], key, scenes)
+            except (KeyError, Unreadable):
+                return {}
         failed = any(trial.failed for block in blocks.values() for trial in block.outcomes)
         return blocks if self.provenance.exists() and not failed else {}
 
@@ -152,8 +160,9 @@ class RunFolder:
 
     def load_failure(self, key: str) -> str:
         """Return what is known about the failed trials of a block; empty without any."""
-        path = self.failures / f"{key}.txt"
-        return path.read_text("utf-8", errors="replace") if path.exists() else ""
+        with suppress(FileNotFoundError):
+            return contents(self.failures / f"{key}.txt").decode(errors="replace")
+        return ""
 
     def save_tables(self, trials: Trials, deliveries: Deliveries) -> str:
         """Write what was assembled and return the SHA-256 of the outcomes."""

@@ -43,6 +43,9 @@ them in again at the next tensor of that size."""
 _MOST = 4096
 """Processes of one machine; more is a slip of the keyboard."""
 
+_SIGNALS = {number.value: number.name for number in signal.Signals}
+"""Most signals of real time have no name."""
+
 _BOOT = (
     "import sys; from faultpath.run.work.processes import main; "
     "main(int(sys.argv[1]), int(sys.argv[2]))"
@@ -155,7 +158,8 @@ class _Process:
         if code >= 0:
             return f"the worker process ended by itself with status {code}"
         hint = ", often for want of memory" if code == -signal.SIGKILL else ""
-        return f"the worker process was ended by {signal.Signals(-code).name}{hint}"
+        name = _SIGNALS.get(-code, f"signal {-code}")
+        return f"the worker process was ended by {name}{hint}"
 
 
 def main(channel: int, lifeline: int) -> None:
