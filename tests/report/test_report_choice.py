@@ -7,7 +7,7 @@ import pytest
 from page_reader import unpack
 
 from faultpath.analyses.model import AuditResult
-from faultpath.analyses.pairs import Pair, choose, read_pairs
+from faultpath.analyses.pairs import Pair, alike, choose, read_pairs
 from faultpath.report.inputs import ReportInput
 from faultpath.report.viewer import captions, viewer_data
 from faultpath.system import Status
@@ -75,6 +75,17 @@ def timed(pairs: list[Pair], *times: float) -> list[Pair]:
     ]
 
 
+@pytest.mark.parametrize("unknown", ["baseline", "repair"])
+def test_a_time_that_one_version_lacks_is_that_of_the_other(one_seed, unknown):
+    pairs = timed(scenes(one_seed, *["rrrr"] * 3), 2.0, 4.0, 9.0)
+    without = [
+        replace(pair, **{unknown: replace(getattr(pair, unknown), time_s=float("nan"))})
+        for pair in pairs
+    ]
+    assert alike(without) == alike(pairs)
+    assert [typical for _, typical in alike(pairs).values()] == [False, True, False]
+
+
 @pytest.mark.parametrize(
     ("signs", "patterns", "first"),
     [
@@ -106,9 +117,9 @@ def test_of_scenes_that_go_alike_the_median_one_is_shown_and_stays_shown(
     assert begun(one_seed, record, pairs, recorded=(1,))[0] == 1
     other = scenes(one_seed, "bbrb", "bbbb", "bbrb")
     assert begun(one_seed, record, other, recorded=(1,))[-1] == 1, "it goes otherwise"
-    alike = timed(pairs, *[float("nan")] * 5)
-    assert begun(one_seed, record, alike)[0] == 0
-    assert not any("typical" in words for words in captions(alike).values())
+    untimed = timed(pairs, *[float("nan")] * 5)
+    assert begun(one_seed, record, untimed)[0] == 0
+    assert not any("typical" in words for words in captions(untimed).values())
 
 
 @pytest.mark.parametrize(

@@ -210,8 +210,9 @@ def _parted_s(pairs: Mapping[str, Pair]) -> float:
     """Return when the pairs of a scene that end differently have parted, summed; of all pairs where
     none does. Other tools need not say times: these count as none."""
     apart = [pair for pair in pairs.values() if pair.sign] or list(pairs.values())
-    times = (min(trial.time_s for trial in (pair.baseline, pair.repair) if trial) for pair in apart)
-    return sum(time for time in times if not math.isnan(time))
+    trials = ((trial for trial in (pair.baseline, pair.repair) if trial) for pair in apart)
+    times = ((t.time_s for t in both if not math.isnan(t.time_s)) for both in trials)
+    return sum(min(known, default=0.0) for known in times)
 
 
 def _patterns(pairs: Sequence[Pair]) -> dict[At, Pattern]:
