@@ -30,7 +30,7 @@ from faultpath.stats.power import MIN_SCENES
 
 _SIDE = 340.0
 """Side of the square, in pixels."""
-_LEFT, _RIGHT, _TOP = 40.0, 104.0, 168.0
+_LEFT, _RIGHT, _TOP = 40.0, 112.0, 168.0
 _EQUAL = "0: both succeed equally often"
 
 

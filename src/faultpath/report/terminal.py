@@ -53,7 +53,7 @@ def decision(result: AuditResult, details: bool = False) -> RenderableType:
         about += [Text(f"A sequential audit: {how}.")]
     parts += [Text(""), *about] if about and text.findings else about
     parts += [Text(""), Parted(success), Text(""), Parted(effects)]
-    if result.break_even:
+    if result.break_even and not result.invalid:
         explained = (
             "Break-even, % of trials with the fault: the estimate where there is one, and in "
             "brackets where neither is shown to be ahead; none: one is ahead everywhere; any: no "

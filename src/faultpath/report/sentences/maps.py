@@ -61,7 +61,7 @@ def sentences(result: MapResult) -> tuple[str, ...]:
             f"{result.winner(-sign)}."
             for module, sign, sizes in _turned(result)
         ),
-        *(_flipped(result, flip) for flip in result.flips if any(ahead.values())),
+        *(_flipped(result, flip) for flip in result.flips if flip.start or flip.turned),
         _distribution(result),
         _expected(result),
     )
@@ -138,10 +138,8 @@ def _flipped(result: MapResult, flip: Flip) -> str:
             reach = f"at the sizes run from {first} to {size_label(facts, flip.last)}"
             reach = f"at {first}" if flip.first == flip.last else reach
         clauses.append(f"{result.winner(flip.turned)} is ahead {reach}")
-    elif not flip.start or abs(flip.until or 0.0) < facts.up_to:
-        clauses.append(
-            "no size changes that significantly" if clauses else "nothing is significant"
-        )
+    elif abs(flip.until or 0.0) < facts.up_to:
+        clauses.append("no size changes that significantly")
     return f"{where}: {', '.join(clauses)}."
 
 
