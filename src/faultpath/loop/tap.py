@@ -31,6 +31,30 @@ from faultpath.loop.reading import (
 )
 
 
+@dataclass(slots=True)
+class ReadCount:
+    """How often a tap was read."""
+
+    deliveries: int = 0
+    """Steps in which a scene read."""
+    answers: int = 0
+    """Answers of queries, over all steps."""
+    step: int = -1
+    """The last step in which a scene read."""
+    scenes: set[int | None] = field(default_factory=set[int | None])
+    """Scenes that read in that step; `None`: all."""
+
+    def add(self, step: int, scene: int | None) -> bool:
+        """Count a read; return whether it is the first of its scene in this step."""
+        if step != self.step:
+            self.step, self.scenes = step, set()
+            self.deliveries += 1
+        if None in self.scenes or scene in self.scenes:
+            return False
+        self.scenes.add(scene)
+        return True
+
+
 @dataclass(slots=True, eq=False)
 class Tap:
     """A channel as one reader gets it."""
@@ -42,14 +66,8 @@ class Tap:
     shape: tuple[int, ...]
     """Shape of every reading, scenes first."""
     corruptions: tuple[Corruption, ...] = ()
-    deliveries: int = 0
-    answers: int = 0
-    """Answers of queries, over all steps."""
+    reads: ReadCount = field(default_factory=ReadCount)
     last_step: int = -1
-    read_step: int = -1
-    """Last step in which a scene read."""
-    read_by: set[int | None] = field(default_factory=set[int | None])
-    """Scenes that read in that step; `None`: all."""
     value: Array = None
     """Value of this step's reading, before any fault."""
     cached: Array = None
@@ -75,8 +93,8 @@ class Tap:
         return TapLog(
             channel=self.channel,
             reader=self.reader,
-            deliveries=self.deliveries,
-            answers=self.answers,
+            deliveries=self.reads.deliveries,
+            answers=self.reads.answers,
             faults=tuple(
                 FaultLog(
                     corruption.fault.describe(),

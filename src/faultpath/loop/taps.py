@@ -141,7 +141,7 @@ class Taps:
         value = reading.value
         if scene == UNREAD and not tap.corruptions:
             return None
-        if scene != UNREAD and not (tap.deliveries or isinstance(value, Query)):
+        if scene != UNREAD and not (tap.reads.deliveries or isinstance(value, Query)):
             tap.check_first(value, self._scenes)
         if step != tap.last_step:
             if step < tap.last_step:
@@ -171,14 +171,8 @@ class Taps:
 
     def _note_read(self, tap: Tap, step: int, scene: int | None) -> None:
         """Count a read, once a step and scene."""
-        if step != tap.read_step:
-            tap.read_step, tap.read_by = step, set()
-            tap.deliveries += 1
-        if None in tap.read_by or scene in tap.read_by:
-            return
-        tap.read_by.add(scene)
-        if isinstance(tap.value, Query):
-            return  # each answer is counted
+        if not tap.reads.add(step, scene) or isinstance(tap.value, Query):
+            return  # of a query each answer is counted
         only = None if scene is None else np.arange(len(self._scenes)) == scene
         self._count(tap, step, only)
         self._trajectories.note(tap.cached, only)
@@ -202,8 +196,8 @@ class Taps:
                 "was delivered in this step"
             )
         answer = read_only(query.answer(request))
-        number, first = next(numbers), not tap.answers
-        tap.answers += 1
+        number, first = next(numbers), not tap.reads.answers
+        tap.reads.answers += 1
         delivered = answer
         if first or tap.corruptions or tap.guard:
             clean = value = query.value(answer)

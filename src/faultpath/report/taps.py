@@ -136,7 +136,7 @@ def fork_panel(fork: Fork) -> Markup:
 
 def _branch(svg: Svg, x: float, y: float, reader: Reader, everywhere: bool) -> None:
     """Draw one module with its way from the source, and the tap on it."""
-    above, box, room = max(93.0, y - _PITCH), x + _BOX, _VARIANT - _BOX - 12
+    above, box, room = max(93.0, y - _PITCH), x + _BOX, _VARIANT - _BOX - 9
     if not reader.taps:
         svg.path(f"M{x + _TRUNK} {above}V{y}H{box}", "wire other")
         svg.rect(box, y - 19, _VARIANT - _BOX, 38, "absent", 4)
