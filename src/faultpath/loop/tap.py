@@ -41,17 +41,21 @@ class ReadCount:
     """Answers of queries, over all steps."""
     step: int = -1
     """The last step in which a scene read."""
-    scenes: set[int | None] = field(default_factory=set[int | None])
+    scenes: set[int] | None = None
     """Scenes that read in that step; `None`: all."""
 
     def add(self, step: int, scene: int | None) -> bool:
         """Count a read; return whether it is the first of its scene in this step."""
         if step != self.step:
-            self.step, self.scenes = step, set()
-            self.deliveries += 1
-        if None in self.scenes or scene in self.scenes:
+            self.step, self.deliveries = step, self.deliveries + 1
+            self.scenes = None if scene is None else {scene}
+            return True
+        if self.scenes is None or scene in self.scenes:
             return False
-        self.scenes.add(scene)
+        if scene is None:
+            self.scenes = None
+        else:
+            self.scenes.add(scene)
         return True
 
 
