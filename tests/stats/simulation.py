@@ -263,6 +263,24 @@ def trainings(
     return announced / runs
 
 
+def alike(scenes: int, seeds: int, runs: int = 1000) -> float:
+    """Return how often something is reported of equal methods under four conditions, of which all
+    trainings succeed in nearly the same scenes: six contrasts."""
+    stream = generator("statistics", f"alike {scenes} {seeds}", 0)
+    announced = 0
+    for _ in range(runs):
+        variants = {
+            condition: tuple(
+                stream.normal(0.0, 0.15, (2, scenes, 1))
+                + stream.normal(0.0, 0.02, (2, scenes, seeds))
+                < 0.0
+            )
+            for condition in CONDITIONS
+        }
+        announced += announces(decide_conditions(variants, models=True))
+    return announced / runs
+
+
 def detection(scenes: int, truth: Population, alpha: float, runs: int = 20) -> float:
     """Return how often a true difference is detected that audits of equal variants reported as the
     least detectable one, averaged over ``runs`` reports."""

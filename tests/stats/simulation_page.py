@@ -14,6 +14,7 @@ from simulation import (
     LEANS,
     RATES,
     Population,
+    alike,
     any_look,
     beside_failures,
     break_even_coverage,
@@ -160,6 +161,7 @@ def sections() -> Iterator[Section]:
     yield "Failed trials", table("trials that fail", failures, rows, lambda row, of: of(row))
     trained = {
         "new trainings": lambda s: trainings(100, s, True),
+        "new and alike, six contrasts": lambda s: alike(100, s),
         "these trainings": lambda s: trainings(100, s, False),
         "new, one in ten collapses": lambda s: trainings(100, s, True, collapse=0.4),
     }
