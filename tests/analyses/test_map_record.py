@@ -46,7 +46,7 @@ def test_the_break_even_correlation_is_where_the_expectation_is_zero() -> None:
 
 @pytest.mark.parametrize("sign", [1, -1])
 def test_of_many_scenes_each_side_keeps_its_correlations(sign: int) -> None:
-    """What is undecided between them was narrower than the grid, and one side had all of them."""
+    """The undecided part between them was narrower than the grid, and one side had all of it."""
 
     def seen(x: float, y: float) -> tuple[np.ndarray, np.ndarray]:
         return np.full(1000, x * y > 0.02), np.full(1000, x * y < -0.02)

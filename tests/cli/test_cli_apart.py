@@ -1,4 +1,4 @@
-"""What a system prints and which folder it enters is its own affair, and no part of a command."""
+"""Prints and working directories of a system are its own affair, and no part of a command."""
 
 import json
 import os

@@ -75,7 +75,7 @@ def load_system(name, load=faultpath.load_system):
     return load(name)
 faultpath.load_system = load_system
 """
-"""What each notebook begins with here: a flight of a few steps shows as much as a whole one."""
+"""Beginning of each notebook here: a flight of a few steps shows as much as a whole one."""
 
 
 @pytest.mark.slow

@@ -34,7 +34,7 @@ SETTINGS = {
     "OPENBLAS_CORETYPE": "Nehalem",
     "MKL_ENABLE_INSTRUCTIONS": "SSE4_2",
 }
-"""What a user may have set: plain and old code in the libraries, and two threads."""
+"""Settings that a user may have made: plain and old code in the libraries, and two threads."""
 
 
 APPROXIMATED = {"sqrt", "rsqrt", "acos", "asin", "erf", "erfc", "erfinv"}

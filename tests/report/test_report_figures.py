@@ -121,7 +121,7 @@ def test_wide_letters_count_as_wide() -> None:
 
 
 def test_the_counts_of_a_grid_with_many_pairs_fit_into_its_width() -> None:
-    """Of 10,000 scenes with three seeds the last count was cut off."""
+    """The last count of 10,000 scenes with three seeds was cut off."""
     for most, lines in ((99, 1), (30_000, 2), (300_000, 2)):
         drawn = pair_grid("shared", (), dict.fromkeys(PairKind, most), {})
         texts = re.findall(r'<text[^>]*class="small soft"[^>]*>([^<]*)', drawn)

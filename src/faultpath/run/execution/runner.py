@@ -115,8 +115,8 @@ def run_plan(
                 if blocks := run.finished(keys, may_stop and plan.scenes_per_analysis > 0):
                     manifest, units = earlier, stored
                     changed = named(earlier.code.changed(code.state)) or "faultpath"
-                    made = [unit for unit in units if unit.key in blocks]
-                    notice(repeat(blocks, made, run, work, changed))
+                    finished = [unit for unit in units if unit.key in blocks]
+                    notice(repeat(blocks, finished, run, work, changed))
             state = RunState(plan, library, units, run, stop)
             with run.open(manifest, notice, shared):
                 missing = state.resume(notice)
