@@ -141,7 +141,8 @@ def main() -> None:
     print("\n".join(map(page.summary, records)))
     machine = describe()
     if before is not None:
-        machine, when = before.machine, f"measured on {machine.date}"
+        here = "" if machine.processor == before.machine.processor else f", {machine.processor}"
+        machine, when = before.machine, f"measured on {machine.date}{here}"
         for new in records:
             note = new.note if new.ours is None else "; ".join(filter(None, (new.note, when)))
             kept[new.name] = new.model_copy(update={"note": note})
