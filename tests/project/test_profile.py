@@ -4,8 +4,10 @@ import ast
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
+from itertools import pairwise
 from pathlib import Path
-from types import FrameType
+from types import CodeType, FrameType
 from typing import Any
 
 import pytest
@@ -13,8 +15,12 @@ import pytest
 import faultpath
 from faultpath.analyses.facts import ComparisonFacts
 from faultpath.analyses.model import AuditResult
+from faultpath.cli.main import main
 from faultpath.faults import Fault, FaultText, Intervention, resolve
+from faultpath.loop.corruption import Corruption
+from faultpath.report.effects import effect_rows
 from faultpath.run.question import AuditCall, AuditQuestion
+from faultpath.stats.effects import success_effect
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = str(ROOT / "src" / "faultpath")
@@ -156,6 +162,55 @@ def test_an_effect_passes_eight_classes_and_a_question_four(tmp_path: Path) -> N
     assert len(effect.classes) <= 8, effect.classes
     assert {AuditCall, AuditQuestion} <= questions.classes
     assert len(questions.classes) <= 4, questions.classes
+
+
+def given(frame: FrameType) -> set[int]:
+    """Return which objects are arguments of a call, alone or in a tuple or a dictionary."""
+    code, flags = frame.f_code, (0x4, 0x8)  # *args and **kwargs
+    count = code.co_argcount + code.co_kwonlyargcount + sum(bool(code.co_flags & f) for f in flags)
+    arguments = [frame.f_locals.get(name) for name in code.co_varnames[:count]]
+    inside = [part for part in arguments if isinstance(part, tuple)]
+    inside += [tuple(part.values()) for part in arguments if isinstance(part, dict)]
+    several = [*arguments, *(part for parts in inside for part in parts)]
+    return {id(p) for p in several if is_ours(p) or (isinstance(p, str | tuple | dict) and p)}
+
+
+def test_at_most_25_functions_hand_on_what_they_got_between_command_and_table(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On the calls from the command to a tap, to a computed effect, and to its row in the page."""
+    ends = {Corruption.act.__code__, success_effect.__code__, effect_rows.__code__}
+    stacks: dict[CodeType, list[tuple[CodeType, set[int]]]] = {}
+
+    def observe(frame: FrameType, event: str, result: Any) -> None:
+        if event != "call" or frame.f_code not in ends or frame.f_code in stacks:
+            return
+        stack, outer = stacks.setdefault(frame.f_code, []), frame
+        while outer:
+            if outer.f_code.co_filename.startswith(SOURCE):
+                stack.insert(0, (outer.f_code, given(outer)))
+            outer = outer.f_back
+
+    options = "--baseline calibrated --repair blind --library carts --fault gain:scale=0.6"
+    system = f"{ROOT / 'examples' / 'toy.py'}:create"
+    more = ("--scenes", "3", "--workers", "0", "--no-signals", "--out", str(tmp_path))
+    monkeypatch.setattr(sys, "argv", ["faultpath", "audit", system, *options.split(), *more])
+    sys.setprofile(observe)
+    try:
+        with suppress(SystemExit):
+            main()
+    finally:
+        sys.setprofile(None)
+    assert stacks.keys() == ends
+    passed = {code for stack in stacks.values() for code, _ in stack}
+    handing = {
+        code
+        for stack in stacks.values()
+        for (code, mine), (_, of_next) in pairwise(stack)
+        if mine & of_next
+    }
+    assert main.__code__ in passed
+    assert len(handing) <= 25, sorted(code.co_qualname for code in handing)
 
 
 def test_a_class_has_at_most_fifteen_fields() -> None:
