@@ -42,7 +42,7 @@ def run(tmp_path_factory: pytest.TempPathFactory, selection_held_out: None, shor
     folder = tmp_path_factory.mktemp("run")
     reproduction = ChosenPages((ONE,), TINY)
     job = Job(folder, Here(), SILENT)
-    flown = flights.fly(reproduction.legs(), folder, job.run, lambda now: None)
+    flown = flights.fly(reproduction.legs(), job, lambda now: None)
     evidence = measure_all(reproduction, folder, 0, lambda done, total: None)
     results = reproduction.results(flown.trials, evidence)
     save(folder, flown, results, conclude(reproduction, results))

@@ -4,10 +4,10 @@ import hashlib
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
+from faultpath.api.job import Job
 from faultpath.faults import at_readers
-from faultpath.run.execution.runner import RunResult
+from faultpath.run.execution.runner import RunResult, run_plan
 from faultpath.run.plan import Plan, Row, SystemSpec, Treatment
 from faultpath.run.registry import load_system
 from faultpath.run.trials import Trials
@@ -17,7 +17,6 @@ from faultpath_paper.cells import SYSTEM, Cell, Profile, Setting
 
 FLIGHTS = "flights"
 """Folder, inside that of a run, with one folder a setting."""
-Run = Callable[..., RunResult]
 
 
 @dataclass(frozen=True)
@@ -83,10 +82,10 @@ def legs_of(cells: Iterable[Cell], profile: Profile, options: Mapping[str, str])
     return tuple(legs)
 
 
-def fly(legs: Sequence[Leg], folder: Path, run: Run, show: Callable[[Progress], None]) -> Flown:
+def fly(legs: Sequence[Leg], job: Job, show: Callable[[Progress], None]) -> Flown:
     """Run the legs one after the other, keeping what the folder of a run already holds.
 
-    `run` is what runs a plan of a system into a folder. Raises as `run_plan` does.
+    Raises as `run_plan` does.
     """
     before, total = 0, sum(leg.trials for leg in legs)
     results: list[RunResult] = []
@@ -95,8 +94,18 @@ def fly(legs: Sequence[Leg], folder: Path, run: Run, show: Callable[[Progress], 
         def progress(done: Progress, before: int = before, leg: Leg = leg) -> None:
             show(done.within(total, before, leg.plan.name))
 
-        place = folder / FLIGHTS / leg.folder
-        results.append(run(leg.plan, leg.system, progress, place, shared=True, recheck=False))
+        result = run_plan(
+            leg.plan,
+            job.folder / FLIGHTS / leg.folder,
+            progress=progress,
+            notice=job.display.say,
+            system=leg.system,
+            shared=True,
+            executor=job.executor,
+            time_limit_s=job.time_limit_s,
+            recheck=False,
+        )
+        results.append(result)
         before += leg.trials
     return Flown(tuple(legs), tuple(results))
 

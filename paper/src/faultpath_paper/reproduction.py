@@ -122,7 +122,7 @@ def carry_out(chosen: ChosenPages, job: Job) -> ReproductionRun:
     display, folder, executor = job.display, job.folder, job.executor
     legs = chosen.legs()
     with display.progress("Running") as show:
-        flown = fly(legs, folder, job.run, show)
+        flown = fly(legs, job, show)
     evidence = EvidenceTable({})
     if chosen.measurements():
         workers = (os.cpu_count() or 1) if executor.name else executor.count
@@ -142,7 +142,8 @@ def carry_out(chosen: ChosenPages, job: Job) -> ReproductionRun:
     place = folder / chosen.place
     record = conclude(chosen, results)
     result = save(place, flown, results, record)
-    provenance = replace(job, folder=place).finish(result, chosen.system, (*RESULTS, DELIVERIES))
+    files = (*RESULTS, DELIVERIES)
+    provenance = replace(job, folder=place).finish(result, files, chosen.system.backend)
     write_pages(place, record, provenance)
     return ReproductionRun(place, record, provenance)
 

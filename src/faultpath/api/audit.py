@@ -3,7 +3,6 @@
 import os
 from collections.abc import Sequence
 from contextlib import suppress
-from functools import partial
 from os import PathLike
 from pathlib import Path
 from typing import Any, TypeVar
@@ -24,7 +23,7 @@ from faultpath.api.folders import (
     parsed,
     read_provenance,
 )
-from faultpath.api.job import Job, begin, run, with_question_signature
+from faultpath.api.job import Job, begin, job_of, with_question_signature
 from faultpath.api.replaying import Replayed, outcomes_at, run_again, shown_first
 from faultpath.api.runs import MapRun, Run, ScanRun
 from faultpath.core.errors import UserError
@@ -78,8 +77,33 @@ def audit(
         UserError: What was asked cannot be done; the sentence says why, and what to do.
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
-    conduct = partial(carry_out, signals=arguments.get("signals", True))
-    return run("audit", AuditCall, audit_analysis, conduct, system, arguments, progress)
+    question, chosen, library, display = begin("audit", AuditCall, system, arguments, progress)
+    analysis = audit_analysis(chosen.system, chosen.spec, question, library)
+    versions = question.baseline, question.repair
+    with job_of(question, chosen, analysis, display) as job:
+        shown = system_shown(chosen.system, versions, analysis.plan.scenes)
+        _, result = job.trials(analysis)
+        record = with_stored(job.folder, analysis.conclude(result.trials, result.deliveries))
+        recorded = _kept_signals(job.folder, result)
+        if question.signals:
+            replays, finding = _run_first_scenes(analysis, job, record, result, recorded)
+            recorded |= {replay.address: replay.signals for replay in replays if replay.signals}
+            finding = finding or _unrepeated(replays)
+            if finding:
+                display.say(describe(finding))
+                findings = (*result.deliveries.findings, finding)
+                deliveries = result.deliveries.model_copy(update={"findings": findings})
+                record = with_stored(job.folder, analysis.conclude(result.trials, deliveries))
+        recorded = dict(sorted(recorded.items()))
+        write_text(job.folder / RECORD, as_text(record), job.folder)
+        write_text(job.folder / SYSTEM, as_text(shown), job.folder)
+        if recorded:
+            write_file(job.folder / SIGNALS, encode_signals(recorded), job.folder)
+        files = (*MADE_FROM, SIGNALS) if recorded else MADE_FROM
+        provenance = job.finish(result, files, chosen.system.backend)
+    run = Run(job.folder, ReportInput(record, provenance, shown, result.trials, recorded))
+    run.report()
+    return run
 
 
 @with_question_signature(AuditCall)
@@ -138,8 +162,12 @@ def map(
         UserError: What was asked cannot be done; the sentence says why, and what to do.
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
-    finish = partial(_finished, MapRun)
-    return run("map", MapCall, map_analysis, finish, system, arguments, progress)
+    question, chosen, library, display = begin("map", MapCall, system, arguments, progress)
+    analysis = map_analysis(chosen.system, chosen.spec, question, library)
+    with job_of(question, chosen, analysis, display) as job:
+        run = _concluded(MapRun, analysis, job)
+    run.report()
+    return run
 
 
 @with_question_signature(ScanCall)
@@ -159,45 +187,22 @@ def scan(
         UserError: What was asked cannot be done; the sentence says why, and what to do.
         Stopped: Ctrl-C, or a notebook's stop button, ended it; the same call resumes.
     """
-    if not arguments.get("trials", True):
-        question, chosen, library, _ = begin("scan", ScanCall, system, arguments, progress)
+    question, chosen, library, display = begin("scan", ScanCall, system, arguments, progress)
+    if not question.trials:
         return ranked_sources(chosen.system, question, library)
-    finish = partial(_finished, ScanRun)
-    return run("scan", ScanCall, scan_analysis, finish, system, arguments, progress)
+    analysis = scan_analysis(chosen.system, chosen.spec, question, library)
+    with job_of(question, chosen, analysis, display) as job:
+        run = _concluded(ScanRun, analysis, job)
+    run.report()
+    return run
 
 
-def _finished(kind: type[_Finished], analysis: Analysis[Any], job: Job) -> _Finished:
+def _concluded(kind: type[_Finished], analysis: Analysis[Any], job: Job) -> _Finished:
     """Run the rounds of an analysis, conclude, and write its result."""
     items, result = job.trials(analysis)
     record = analysis.conclude(result.trials, result.deliveries, items)
     write_text(job.folder / kind.files[0], as_text(record), job.folder)
-    return kind(job.folder, record, job.finish(result, analysis.system, kind.files))
-
-
-def carry_out(audit: AuditAnalysis, job: Job, signals: bool = True) -> Run:
-    """Run, decide, record `signals`, and write what the run folder's pages are made from."""
-    folder, system, question = job.folder, audit.system, audit.question
-    shown = system_shown(system, (question.baseline, question.repair), audit.plan.scenes)
-    _, result = job.trials(audit)
-    record = with_stored(folder, audit.conclude(result.trials, result.deliveries))
-    recorded = _kept_signals(folder, result)
-    if signals:
-        replays, finding = _run_first_scenes(audit, job, record, result, recorded)
-        recorded |= {replay.address: replay.signals for replay in replays if replay.signals}
-        finding = finding or _unrepeated(replays)
-        if finding:
-            job.display.say(describe(finding))
-            findings = (*result.deliveries.findings, finding)
-            deliveries = result.deliveries.model_copy(update={"findings": findings})
-            record = with_stored(folder, audit.conclude(result.trials, deliveries))
-    recorded = dict(sorted(recorded.items()))
-    write_text(folder / RECORD, as_text(record), folder)
-    write_text(folder / SYSTEM, as_text(shown), folder)
-    if recorded:
-        write_file(folder / SIGNALS, encode_signals(recorded), folder)
-    files = (*MADE_FROM, SIGNALS) if recorded else MADE_FROM
-    provenance = job.finish(result, system, files)
-    return Run(folder, ReportInput(record, provenance, shown, result.trials, recorded))
+    return kind(job.folder, record, job.finish(result, kind.files, analysis.system.backend))
 
 
 def with_stored(folder: Path, record: AuditResult) -> AuditResult:

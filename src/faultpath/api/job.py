@@ -4,7 +4,8 @@ import hashlib
 import inspect
 import re
 import textwrap
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from functools import partial
@@ -13,15 +14,13 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from faultpath.analyses.analysis import Analysis, Items
-from faultpath.api.display import Display, Show, display
-from faultpath.api.runs import MapRun, Run, ScanRun
+from faultpath.api.display import Display, display
 from faultpath.api.systems import Chosen, choose, executor_of
 from faultpath.core.errors import UserError
 from faultpath.core.text import counted, unknown
 from faultpath.report.sentences.findings import describe
 from faultpath.run.code import system_code
 from faultpath.run.execution.runner import Failure, RunResult, run_plan
-from faultpath.run.plan import Plan, SystemSpec
 from faultpath.run.provenance import RunProvenance, run_provenance
 from faultpath.run.question import Request, Running, ScanCall, UserQuestion, ask
 from faultpath.run.store.folder import keyed
@@ -32,9 +31,6 @@ from faultpath.system.system import System
 
 _Call = TypeVar("_Call", bound=Callable[..., Any])
 _Question = TypeVar("_Question", bound=Request)
-_Request = TypeVar("_Request", bound=Running | ScanCall)
-_Analysis = TypeVar("_Analysis", bound=Analysis[Any])
-_Finished = TypeVar("_Finished", bound=Run | MapRun | ScanRun)
 
 _ERRORS_SHOWN = 5
 _LONGEST_NAME = 180
@@ -113,14 +109,6 @@ class Job:
     """Longest that a block may take; `None` for what the system says."""
     started: datetime = field(default_factory=lambda: datetime.now(UTC))
 
-    def run(
-        self, plan: Plan, system: System, show: Show, folder: Path | None = None, **how: Any
-    ) -> RunResult:
-        """Run a plan, into the job's folder unless another is given; see `run_plan` for `how`."""
-        how = {"notice": self.display.say, "time_limit_s": self.time_limit_s, **how}
-        place, executor = folder or self.folder, self.executor
-        return run_plan(plan, place, progress=show, system=system, executor=executor, **how)
-
     def trials(self, analysis: Analysis[Items]) -> tuple[Items, RunResult]:
         """Run the rounds of an analysis; return what they amount to, and the result of all trials.
 
@@ -150,7 +138,15 @@ class Job:
                     state = state.within(max(state.done, whole), remark=remark)
                 show(state)
 
-            run = partial(self.run, system=analysis.system, show=note, notice=notice)
+            run = partial(
+                run_plan,
+                folder=self.folder,
+                progress=note,
+                notice=notice,
+                system=analysis.system,
+                executor=self.executor,
+                time_limit_s=self.time_limit_s,
+            )
             while True:
                 result = run(current.plan, shared=several, recheck=not several, stop=current.stop)
                 noticed.add("Kept ")
@@ -167,7 +163,7 @@ class Job:
         blocks = result.blocks_kept + result.blocks_computed
         return items, replace(result, blocks_computed=computed, blocks_kept=blocks - computed)
 
-    def finish(self, result: RunResult, system: System, names: Iterable[str]) -> RunProvenance:
+    def finish(self, result: RunResult, names: Iterable[str], backend: str = "") -> RunProvenance:
         """Display failures and write the provenance, with digests of the files that `names` are.
 
         A command shows findings with what was decided; a call from Python is shown them here.
@@ -195,32 +191,19 @@ class Job:
             self.started,
             self.display.command,
             self.executor,
-            system.backend,
+            backend,
         )
 
 
-def run(
-    call: str,
-    model: type[_Request],
-    analysis_of: Callable[[System, SystemSpec, _Request, Library], _Analysis],
-    carry_out: Callable[[_Analysis, Job], _Finished],
-    system: str | PathLike[str] | System,
-    arguments: Mapping[str, object],
-    progress: bool | Display,
-) -> _Finished:
-    """Read a question, plan its trials, run them, conclude, and write record and pages.
-
-    `call` is the name of the function. Raises `UserError` for what cannot be done, and `Stopped` on
-    Ctrl-C.
-    """
-    request, chosen, library, display = begin(call, model, system, arguments, progress)
-    analysis = analysis_of(chosen.system, chosen.spec, request, library)
-    place = run_folder(request, chosen, analysis.named)
-    workers = 0 if chosen.own else request.workers
-    with executor_of(chosen.system, workers, request.executor) as executor:
-        finished = carry_out(analysis, Job(place, executor, display, request.time_limit_s))
-    finished.report()
-    return finished
+@contextmanager
+def job_of(
+    question: Running | ScanCall, chosen: Chosen, analysis: Analysis[Any], display: Display
+) -> Generator[Job]:
+    """Yield the job that runs the trials of an analysis; its workers end with the `with` block."""
+    place = run_folder(question, chosen, analysis.named)
+    workers = 0 if chosen.own else question.workers
+    with executor_of(chosen.system, workers, question.executor) as executor:
+        yield Job(place, executor, display, question.time_limit_s)
 
 
 def run_folder(question: Running | ScanCall, chosen: Chosen, named: Sequence[str]) -> Path:

@@ -17,17 +17,16 @@ from faultpath.analyses.model import CORRECT, SHARED
 from faultpath.api.audit import with_stored
 from faultpath.api.display import Display, display
 from faultpath.api.folders import MADE_FROM, RECORD, SYSTEM, as_text, read_provenance
-from faultpath.api.job import with_question_signature
+from faultpath.api.job import Job, with_question_signature
 from faultpath.api.runs import Run
 from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import begin, locked, write_text
 from faultpath.core.text import series
 from faultpath.interface import Interface
 from faultpath.report.inputs import ReportInput
-from faultpath.report.sentences.findings import describe
 from faultpath.run.deliveries import Deliveries, RowDeliveries
 from faultpath.run.execution.runner import RunResult
-from faultpath.run.provenance import PROVENANCE, amend, run_provenance
+from faultpath.run.provenance import PROVENANCE, amend
 from faultpath.run.question import ask
 from faultpath.run.received.question import JudgeQuestion
 from faultpath.run.received.results import read_results
@@ -82,15 +81,13 @@ def judge(
         system = _system(paired.question)
         result = _stored(folder, paired, system)
         write_text(folder / RECORD, as_text(record), folder)
-        provenance = run_provenance(folder, MADE_FROM, result, started, shown.command, local(0))
+        job = Job(folder, local(0), shown, started=started)
+        provenance = job.finish(result, MADE_FROM)
         # What was read stands where an audit names the data files that ran.
         code = provenance.code.model_copy(update={"data": sources})
         provenance = amend(folder, provenance.model_copy(update={"code": code}), MADE_FROM)
     run = Run(folder, ReportInput(record, provenance, system, paired.trials))
     run.report()
-    if not shown.is_command:
-        for finding in paired.findings:
-            shown.say(describe(finding))
     return run
 
 
