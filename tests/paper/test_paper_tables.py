@@ -69,5 +69,5 @@ def test_a_table_is_what_was_approved(name: str, approved) -> None:
 def test_the_observer_flies_once_and_scenes_of_training_have_their_wind() -> None:
     dob = table_4.cell("dob", "correct")
     assert (dob.fixed, dob.seeds) == (True, (0,))
-    assert run(won(calibrated)).pairs(dob, dob).seeds == (0,)
+    assert len(run(won(calibrated)).pairs(dob, dob).void) == 1
     assert table_3.UNMET.start == trajectories.SCENES

@@ -13,7 +13,8 @@ import pytest
 from calls import alive, end_of
 from cli_runs import until
 
-from faultpath.run.work.executor import Failed, Lost, Returned, WorkerLost, run_all
+from faultpath.core.errors import UserError
+from faultpath.run.work.executor import Failed, Lost, Returned, run_all
 from faultpath.run.work.processes import Processes, local
 
 BOTH = pytest.mark.parametrize("workers", [0, 1])
@@ -65,7 +66,7 @@ def test_a_worker_that_ends_is_replaced(how, says):
         assert isinstance(end, Lost)
         assert re.search(says, end.how)
         assert end_of(executor, partial(calls.double, 1)) == Returned(2)
-        with pytest.raises(WorkerLost, match=says.rstrip("$")):
+        with pytest.raises(UserError, match=says.rstrip("$")):
             list(run_all(executor, [partial(calls.leave, how)]))
 
 

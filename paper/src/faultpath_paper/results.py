@@ -8,7 +8,8 @@ from typing import Any, Concatenate, ParamSpec
 
 import numpy as np
 
-from faultpath.run.pairing import PairingRefused, Pairs, pair
+from faultpath.core.errors import UserError
+from faultpath.run.pairing import Pairs, pair
 from faultpath.run.trials import Trials
 from faultpath.stats.contrast import Contrast
 from faultpath.stats.effects import success_rate
@@ -71,12 +72,12 @@ class Results:
         """Pair two cells over their common seeds; `scenes` keeps some indices.
 
         `other_noise` pairs planners that differ in how they draw: their noise cannot agree. Raises
-        `PairingRefused` where two trials met different conditions: these systems are our own.
+        `UserError` where two trials met different conditions: these systems are our own.
         """
         seeds = self.common_seeds(first, second)
         pairs = pair(self.trials, first.group, second.group, seeds, other_noise=other_noise)
         if pairs.unpaired:
-            raise PairingRefused(str(pairs.unpaired[0]))
+            raise UserError(str(pairs.unpaired[0]))
         pairs = pairs.whole()
         if scenes is not None:
             pairs = pairs.only({scene.id for scene in pairs.scenes if scene.index in scenes})

@@ -17,10 +17,6 @@ from faultpath.system.outcome import Outcome, checked
 from faultpath.system.system import System
 
 
-class WrongOutcomes(SystemMistake):
-    """The system did not return one outcome for each scene, in order."""
-
-
 @dataclass(frozen=True)
 class Done:
     """Every scene has an outcome."""
@@ -113,12 +109,12 @@ def _checked(system: System, scenes: Sequence[str], returned: object) -> list[Ou
     others = [type(outcome).__name__ for outcome in outcomes if not isinstance(outcome, Outcome)]
     if others or not several:
         kind = f"{others[0]} in place of an Outcome" if others else type(returned).__name__
-        raise WrongOutcomes(
+        raise SystemMistake(
             f"run() of system {system.name!r} returned a {kind}: it returns a list with one "
             "Outcome for each scene, in order"
         )
     if (names := [outcome.scene for outcome in outcomes]) != list(scenes):
-        raise WrongOutcomes(
+        raise SystemMistake(
             f"system {system.name!r} was asked for scenes {list(scenes)} and returned outcomes of "
             f"{names}: run() returns one for each, in order"
         )

@@ -18,10 +18,6 @@ from faultpath.system.outcome import Outcome, Status
 _Value = TypeVar("_Value", bound=np.generic)
 
 
-class PairingRefused(UserError):
-    """Two groups that were to be compared do not hold the same seeds and scenes."""
-
-
 @dataclass(frozen=True)
 class Group:
     """The trials of a variant under a condition."""
@@ -44,7 +40,6 @@ class Pairs:
     """Trials of two groups, scene by scene and seed by seed."""
 
     trials: Trials
-    seeds: tuple[int, ...]
     scenes: tuple[SceneRef, ...]
     rows: tuple[Rows, Rows]
     """Those of the first and of the second group, `[seeds, scenes]`."""
@@ -113,17 +108,16 @@ def pair(
     that draw differently, by number of candidates for one: their noise is not compared. Nor is it
     where one of them was run once, with another seed.
     Two trials that differ in their initial state, their disturbance or the planner's noise are no
-    pair and among the `unpaired`. `PairingRefused` when the groups do not hold the same seeds and
-    scenes.
+    pair and among the `unpaired`. `UserError` when the groups hold other seeds or scenes.
     """
     seeds = trials.seeds_of(first.variant, first.condition) if seeds is None else tuple(seeds)
     if not seeds:
-        raise PairingRefused(f"cannot pair {first} with {second}: the table has no trial of it")
+        raise UserError(f"cannot pair {first} with {second}: the table has no trial of it")
     one, two = (_rows(trials, group, seeds) for group in (first, second))
     planned = np.concatenate([one >= 0, two >= 0])
     chosen = np.asarray(planned.any(axis=0))
     if (partly := chosen & ~planned.all(axis=0)).any():
-        raise PairingRefused(
+        raise UserError(
             f"cannot pair {first} with {second}: they ran in different scenes, for example "
             f"{trials.scenes[int(partly.argmax())].id!r}"
         )
@@ -150,16 +144,14 @@ def pair(
                 )
             )
         void[place] |= unlike
-    return Pairs(trials, tuple(seeds), scenes, (one, two), void, tuple(unpaired))
+    return Pairs(trials, scenes, (one, two), void, tuple(unpaired))
 
 
 def _rows(trials: Trials, group: Group, seeds: Sequence[int]) -> Rows:
     try:
         return trials.rows(group.variant, group.condition, [group.at(seed) for seed in seeds])
     except KeyError as error:
-        raise PairingRefused(
-            f"the table has no trial of {group} with seed {error.args[0]}"
-        ) from None
+        raise UserError(f"the table has no trial of {group} with seed {error.args[0]}") from None
 
 
 def unlike(a: Outcome, b: Outcome) -> tuple[tuple[str, str, str], ...]:

@@ -20,7 +20,6 @@ from faultpath.run.work.executor import (
     Failed,
     Lost,
     Returned,
-    WorkerLost,
     elsewhere,
     send_message,
 )
@@ -175,7 +174,7 @@ def dispatch(
             else:
                 false_starts += 1
                 if false_starts > _FALSE_STARTS:
-                    raise WorkerLost(f"worker processes failed to start: {end.how}")
+                    raise UserError(f"worker processes failed to start: {end.how}")
                 lost.append((run.task, run.tried))
         # After the completions, so that a task that has just ended was in time.
         for worker, run in tuple(running.items()):
@@ -202,7 +201,7 @@ def _elsewhere(job: BuildSpec, work: Callable[[System, Any], Any], task: Any) ->
         except (Exception, SystemExit) as error:
             mistake = explained(error) or error
             if elsewhere() and isinstance(mistake, UserError | OSError | ImportError):
-                raise WorkerLost(
+                raise UserError(
                     f"on {elsewhere()}: {mistake} (every node needs the same files and packages, "
                     "from a shared file system, an image, or `ray job submit --working-dir`)"
                 ) from error
@@ -222,9 +221,9 @@ def _build(job: BuildSpec) -> Built:
         differ = named(job.state.changed(built.job.state) or ("the library",))
         other = f"system {job.system.name!r} is another one"
         if place := elsewhere():
-            raise WorkerLost(f"{other} on {place} than here ({differ})")
+            raise UserError(f"{other} on {place} than here ({differ})")
         _check_same(job.state, built.job.state)
-        raise WorkerLost(
+        raise UserError(
             f"{other} in a worker process than here ({differ}): nothing of it may depend on the "
             "process that builds it"
         )

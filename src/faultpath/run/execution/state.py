@@ -12,7 +12,7 @@ from faultpath.loop import TapCount, added
 from faultpath.run.attempt import Done, Raised, Reply
 from faultpath.run.deliveries import TreatmentPart
 from faultpath.run.findings import RaisedTogether
-from faultpath.run.plan import Plan, Task, Treatment, Unit, selected
+from faultpath.run.plan import Plan, Task, Unit, selected
 from faultpath.run.store.folder import RunFolder
 from faultpath.run.trials import Trial, Trials
 from faultpath.run.work.executor import Failed, Lost, Progress
@@ -27,15 +27,10 @@ Stop = Callable[[Trials], bool]
 """Says of the trials of all analyses so far whether they are enough."""
 
 
-class NothingRuns(UserError):
-    """A system failed in all of the first trials: the rest would only repeat it."""
-
-
 @dataclass(frozen=True)
 class Failure:
     """A trial in which the program raised an error or died."""
 
-    treatment: Treatment
     scene: str
     error: str
     details: Path | None
@@ -120,7 +115,7 @@ class RunState:
 
         A block whose program raised an error, or that its worker did not outlive, is run again
         scene by scene, so that only the scenes at fault are lost. Raises the error of `Failed`,
-        and `NothingRuns` after a few failed trials and no other.
+        and `UserError` after a few failed trials and no other.
         """
         unit, taps = task.unit, tuple[TapCount, ...]()
         partial = self._partial.setdefault(unit.key, _Partial())
@@ -152,7 +147,7 @@ class RunState:
         if self._failed >= FEW and not self._sound:
             self._folder.save_failure(unit.key, tracebacks)
             last = next(o for o in reversed(partial.outcomes.values()) if o.failed)
-            raise NothingRuns(
+            raise UserError(
                 f"all of the first {self._failed} trials failed, and none ran to its end; in scene "
                 f"{last.scene!r}: {' '.join((last.error or '').split())[:300]}. Fix the system "
                 "and run the same again; the tracebacks are in "
@@ -185,7 +180,7 @@ class RunState:
                 outcome = self.outcomes[unit.treatment_key, scene]
                 if outcome.failed:
                     place = details if details.exists() else None
-                    failures.append(Failure(unit.treatment, scene, outcome.error or "", place))
+                    failures.append(Failure(scene, outcome.error or "", place))
         return tuple(failures)
 
     def _enter(self, unit: Unit, shard: Done) -> None:

@@ -74,10 +74,6 @@ class Lost:
 End = Returned | Failed | Lost
 
 
-class WorkerLost(UserError):
-    """A worker ended by itself, and the work cannot go on."""
-
-
 def ignore(message: object) -> None:
     """Drop a message of a call."""
     del message
@@ -168,13 +164,13 @@ def run_each(
 def run_all(executor: Executor, calls: Sequence[Callable[[], T]]) -> Iterator[tuple[int, T]]:
     """Run calls and yield the place of each in `calls` with what it returned, as they end.
 
-    Raises the error of the first call that fails, and `WorkerLost` where a worker ends.
+    Raises the error of the first call that fails, and `UserError` where a worker ends.
     """
     for place, end in run_each(executor, calls):
         if isinstance(end, Failed):
             raise end.error
         if isinstance(end, Lost):
-            raise WorkerLost(f"{end.how}; run the same again: what was finished is kept")
+            raise UserError(f"{end.how}; run the same again: what was finished is kept")
         yield place, end.value
 
 
