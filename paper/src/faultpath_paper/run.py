@@ -83,7 +83,7 @@ class ChosenPages:
     def folder(self, name: str) -> Path:
         """Return the run folder of that name for the code as it is."""
         spec = SystemSpec(name=SYSTEM, options=dict(self.options))
-        return keyed(Path("runs"), name, system_code(self.system, spec).state)
+        return keyed(name, system_code(self.system, spec).state)
 
     def results(self, trials: Trials, evidence: EvidenceTable) -> Results:
         """Return what was run and measured, as pages and claims ask for it."""

@@ -227,7 +227,7 @@ def run_folder(question: Running | ScanCall, chosen: Chosen, named: Sequence[str
     if len(name) > _LONGEST_NAME:
         name = f"{name[:_LONGEST_NAME]}-{hashlib.sha256(name.encode()).hexdigest()[:12]}"
     if question.folder is None and not chosen.own:
-        return keyed(Path("runs"), name, system_code(chosen.system, chosen.spec).state)
+        return keyed(name, system_code(chosen.system, chosen.spec).state)
     # No hash tells two objects of a class apart, so each call has a folder of its own.
     stamp = datetime.now().strftime("%Y%m%d-%H%M%S-%f")
     place = question.folder or Path("runs") / f"{name}-{stamp}"

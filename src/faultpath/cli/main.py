@@ -12,9 +12,9 @@ import warnings
 from io import TextIOWrapper
 from traceback import format_exception
 from types import FrameType
-from typing import Any, NoReturn
+from typing import NoReturn
 
-from faultpath.core.errors import Notice, Stopped
+from faultpath.core.errors import Stopped
 from faultpath.core.text import one_line, show_warning
 
 USER_ERROR = 2
@@ -44,7 +44,7 @@ def main() -> NoReturn:
     ctrl_c = _CtrlC()
     if traced and sys.stderr is sys.__stderr__:
         faulthandler.enable()
-    shown, warnings.showwarning = warnings.showwarning, _show
+    shown, warnings.showwarning = warnings.showwarning, show_warning
     try:
         status = _run(arguments)
     except BaseException as error:
@@ -108,14 +108,6 @@ def _explain(error: BaseException, pressed: int, traced: bool) -> int | None:
     if sentence:
         sys.stderr.write(f"faultpath: {one_line(sentence)}\n")
     return status
-
-
-def _show(message: Warning | str, *more: Any, **named: Any) -> None:
-    """Show a notice as a sentence, and other warnings in a line."""
-    if isinstance(message, Notice):
-        sys.stderr.write(f"faultpath: {message}\n")
-    else:
-        show_warning(message, *more, **named)
 
 
 class _CtrlC:

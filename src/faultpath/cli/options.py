@@ -32,10 +32,6 @@ SystemName = Annotated[
         "own options too."
     ),
 ]
-Trust = Annotated[
-    bool,
-    typer.Option("--trust", help="Import all code that the file names; look at it first."),
-]
 Json = Annotated[
     bool,
     typer.Option("--json", help="Print the result as JSON, alone on standard output."),

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from faultpath.cli.options import FOUND, Json, Trust, display
+from faultpath.cli.options import FOUND, Json, display
 from faultpath.cli.options import path as as_path
 from faultpath.core.errors import UserError
 
@@ -41,7 +41,10 @@ def replay(
             help="Code that the run names, to import it; several times for several.",
         ),
     ] = None,
-    trust: Trust = False,
+    trust: Annotated[
+        bool,
+        typer.Option("--trust", help="Import all code that the file names; look at it first."),
+    ] = False,
 ) -> int:
     """Run trials of a finished run again and compare them with the run, to the bit. It runs the
     system that the run names, which has to be installed, named with --code, or trusted. Exits with

@@ -9,6 +9,8 @@ from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 from typing import Any
 
+from faultpath.core.errors import Notice
+
 ADDRESS = " at 0x[0-9a-f]+"
 """Pattern of where an object lies, as its `repr` says; another one in each process."""
 LARGEST_NUMBER = 1e300
@@ -152,11 +154,14 @@ def extra(name: str) -> str:
 def show_warning(
     message: Warning | str, category: type[Warning], filename: str, lineno: int, *more: Any
 ) -> None:
-    """Show a warning in one line; replaces `warnings.showwarning`.
+    """Show a warning in one line, a notice as a sentence; replaces `warnings.showwarning`.
 
     NumPy's warnings of overflow and NaN are left out, because the results say where it matters.
     """
     del more
+    if isinstance(message, Notice):
+        sys.stderr.write(f"faultpath: {message}\n")
+        return
     if issubclass(category, RuntimeWarning) and _NUMPY.match(str(message)):
         return
     line = one_line(f"{near(filename)}, line {lineno}: {category.__name__}: {message}")

@@ -12,14 +12,14 @@ from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from pydantic import ConfigDict, Field, StringConstraints
+from pydantic import Field, StringConstraints
 
 from faultpath.core import __version__
 from faultpath.core.errors import UserError
 from faultpath.core.files.atomic import write_text
 from faultpath.core.files.opening import LARGEST_TEXT, contents, read_regular
 from faultpath.core.files.plain import model_of
-from faultpath.core.results import Frozen, Shown
+from faultpath.core.results import Frozen, Result
 from faultpath.core.trees import packages, release
 from faultpath.run.findings import Recheck
 from faultpath.run.work.executor import Executor
@@ -68,10 +68,8 @@ class RunMachine(Frozen):
     """On what they were, where that is not this machine; platform and processor are this one's."""
 
 
-class RunProvenance(Shown):
+class RunProvenance(Result):
     """The conditions under which a run was made; written as `provenance.json`."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     command: tuple[str, ...]
     code: RunCode

@@ -50,9 +50,9 @@ class Manifest(Frozen):
         return (json.dumps(content, indent=2, sort_keys=True) + "\n").encode()
 
 
-def keyed(place: Path, name: str, code: CodeState) -> Path:
+def keyed(name: str, code: CodeState) -> Path:
     """Return the folder for a question, run by `code`."""
-    return place / f"{name}-{code.digest[:8]}"
+    return Path("runs") / f"{name}-{code.digest[:8]}"
 
 
 class RunFolder:
