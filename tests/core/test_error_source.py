@@ -5,7 +5,8 @@ import sys
 import pyarrow as pa
 import pytest
 
-from faultpath.core.error_source import explained, location, ours
+from faultpath.core.error_source import explained, location
+from faultpath.core.trees import ours
 
 
 def test_a_distribution_that_carries_our_name_answers_for_its_own_mistakes(tmp_path, monkeypatch):

@@ -8,20 +8,16 @@ decides.
 import os
 import re
 import sys
-import sysconfig
 import traceback
 from collections.abc import Callable, Iterator
 from inspect import unwrap
+from pathlib import Path
 from typing import Any, cast
 
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.text import near, one_line
+from faultpath.core.trees import kind_of, ours
 from faultpath.core.validation_messages import misfit_of
-
-_STANDARD = tuple(
-    os.path.realpath(sysconfig.get_path(name)) + os.sep for name in ("stdlib", "platstdlib")
-)
-_PACKAGES = (f"{os.sep}site-packages{os.sep}", f"{os.sep}dist-packages{os.sep}")
 
 _systems: set[str] = set()
 """Folders of loaded systems; those in installed packages would be skipped otherwise."""
@@ -30,23 +26,14 @@ _MISUSE = (TypeError, ValueError, AttributeError, LookupError)
 """Errors that an argument of the wrong kind causes."""
 
 
-def ours(module: str) -> bool:
-    """Return whether a module is the engine's or that of a distribution named `faultpath_...`.
-
-    Modules named `faultpath_system_...` are users' files, which the registry loads by that name.
-    """
-    top = module.partition(".")[0]
-    return top == "faultpath" or (top.startswith("faultpath_") and "_system_" not in top)
-
-
 def note_system(file: str) -> None:
     """Note that the code beside `file` is a system's, even in an installed package.
 
     The standard library is never taken for a system, even where a user names it by mistake.
     """
-    folder = os.path.dirname(os.path.realpath(file)) + os.sep
-    if not folder.startswith(_STANDARD) or any(part in folder for part in _PACKAGES):
-        _systems.add(folder)
+    real = os.path.realpath(file)
+    if kind_of(Path(real)) != "standard":
+        _systems.add(os.path.dirname(real) + os.sep)
 
 
 def location_of(function: Callable[..., Any]) -> str:
@@ -145,7 +132,7 @@ def _skipped(name: str) -> bool:
     file = os.path.realpath(name)
     if file.startswith(tuple(_systems)):
         return False
-    return file.startswith((*_our_folders(), *_STANDARD)) or any(part in file for part in _PACKAGES)
+    return file.startswith(_our_folders()) or kind_of(Path(file)) != "local"
 
 
 def _our_folders() -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""The source trees of a system's code, and the installed packages that it imports."""
+"""Whose a module is, the source trees of a system's code, and the packages that it imports."""
 
 import os
 import re
@@ -16,8 +16,6 @@ from types import ModuleType
 from typing import Literal
 from weakref import WeakKeyDictionary
 
-from faultpath.core.error_source import ours
-
 _INSTALLED = frozenset({"site-packages", "dist-packages"})
 _PACKAGES = ("numpy", "scipy", "pydantic", "pyarrow", "array-api-compat", "torch", "mujoco")
 _NO_SOURCE = frozenset({"__pycache__", "node_modules"})
@@ -31,6 +29,15 @@ _IMPORT = re.compile(
 )
 _REQUIRES = re.compile(r"^Requires-Dist: *([\w.-]+)(?!.*(?:extra|platform|os_name))", re.M)
 """A requirement that holds on every machine."""
+
+
+def ours(module: str) -> bool:
+    """Return whether a module is the engine's or that of a distribution named `faultpath_...`.
+
+    Modules named `faultpath_system_...` are users' files, which the registry loads by that name.
+    """
+    top = module.partition(".")[0]
+    return top == "faultpath" or (top.startswith("faultpath_") and "_system_" not in top)
 
 
 @dataclass(frozen=True)

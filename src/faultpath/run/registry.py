@@ -20,11 +20,11 @@ from importlib.metadata import entry_points
 from pathlib import Path
 from types import CodeType, ModuleType
 
-from faultpath.core.error_source import described, note_system, ours
+from faultpath.core.error_source import described, note_system
 from faultpath.core.error_source import location as where
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.text import extra
-from faultpath.core.trees import Root, imported, kind_of, package_paths
+from faultpath.core.trees import Root, imported, kind_of, ours, package_paths
 from faultpath.run.apart import FOLDER, set_apart, working_directory
 from faultpath.run.opened import reads
 from faultpath.run.plan import SystemSpec
