@@ -9,7 +9,7 @@ from written import written
 
 from faultpath.api.audit import audit
 from faultpath.core.errors import UserError
-from faultpath.run.opened import reads
+from faultpath.run.apart import reads
 
 READ = "np.load(Path(__file__).with_name('gain.npy'))"
 ASKED = {

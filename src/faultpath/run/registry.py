@@ -25,8 +25,7 @@ from faultpath.core.error_source import location as where
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.text import extra
 from faultpath.core.trees import Root, imported, kind_of, ours, package_paths
-from faultpath.run.apart import FOLDER, set_apart, working_directory
-from faultpath.run.opened import reads
+from faultpath.run.apart import FOLDER, reads, set_apart, working_directory
 from faultpath.run.plan import SystemSpec
 from faultpath.system.checks import check_system
 from faultpath.system.options import Factory, Option, builds, call, options_of

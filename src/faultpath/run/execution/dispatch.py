@@ -11,8 +11,8 @@ from typing import Any, Generic, TypeVar
 
 from faultpath.core.error_source import explained
 from faultpath.core.errors import SystemMistake, UserError
+from faultpath.run.apart import reads
 from faultpath.run.code import Code, CodeState, Watch, named, source_state, system_code
-from faultpath.run.opened import reads
 from faultpath.run.plan import SystemSpec
 from faultpath.run.registry import load_system, opened_by
 from faultpath.run.work.executor import (
