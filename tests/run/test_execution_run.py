@@ -178,8 +178,8 @@ def test_rows_of_one_condition_may_have_scenes_of_their_own(tmp_path: Path) -> N
     assert parts.deliveries.at("observed", "correct") == whole.deliveries.at("observed", "correct")
 
 
-def _plan_of(*rows: Row, scenes: tuple[str, ...] = SCENES) -> Plan:
-    return plan().model_copy(update={"rows": rows, "scenes": scenes})
+def _plan_of(*rows: Row) -> Plan:
+    return plan().model_copy(update={"rows": rows})
 
 
 @pytest.mark.parametrize(
@@ -201,24 +201,6 @@ def test_an_audit_that_is_wrong_stops(tmp_path, variant, reader, error, workers)
     )
     with pytest.raises(error, match=r"observer\.balance"):
         run_plan(_plan_of(row), tmp_path, workers=workers)
-
-
-@pytest.mark.parametrize(
-    ("wrong", "sentence"),
-    [
-        (plan(("s00", "nowhere")), "has no scene 'nowhere'"),
-        (plan(("s00", "s01", "s00")), "selects scene 's00' twice"),
-        (plan(()), "selects no scene"),
-        (_plan_of(rows()[0], rows()[0]), "two rows"),
-        (
-            _plan_of(Row(variant="x", condition="p", seed=0, treatment=Treatment(variant="no"))),
-            "no variant 'no'",
-        ),
-    ],
-)
-def test_a_plan_that_cannot_be_run_is_refused(tmp_path, wrong, sentence):
-    with pytest.raises(UserError, match=sentence):
-        run_plan(wrong, tmp_path, workers=0)
 
 
 def test_a_key_names_everything_that_decides_a_result():

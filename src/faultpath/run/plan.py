@@ -9,7 +9,6 @@ from typing import Literal
 
 from pydantic import Field
 
-from faultpath.core.errors import UserError
 from faultpath.core.results import Frozen
 from faultpath.faults import Fault
 from faultpath.system.declared import Library, SceneRef
@@ -83,39 +82,9 @@ class Plan(Frozen):
 
 
 def selected(plan: Plan, library: Library) -> tuple[SceneRef, ...]:
-    """Return the scenes of a plan by index; `UserError` for an unknown, repeated or absent one."""
+    """Return the scenes of a plan by index."""
     known = {scene.id: scene for scene in library.scenes}
-    unknown = [scene for scene in plan.scenes if scene not in known]
-    if unknown:
-        raise UserError(
-            f"library {library.name!r} has no scene {unknown[0]!r}: choose from its "
-            f"{len(known)} scenes, the first of which is {next(iter(known), 'none')!r}"
-        )
-    if not plan.scenes:
-        raise UserError(f"plan {plan.name!r} selects no scene: choose at least one")
-    if len(set(plan.scenes)) < len(plan.scenes):
-        twice = next(s for s in plan.scenes if plan.scenes.count(s) > 1)
-        raise UserError(f"plan {plan.name!r} selects scene {twice!r} twice: select it once")
     return tuple(sorted((known[scene] for scene in plan.scenes), key=lambda scene: scene.index))
-
-
-def check_rows(rows: Iterable[Row], variants: Iterable[str]) -> None:
-    """Raise `UserError` for a row without a known variant, or for two rows at one address."""
-    known = tuple(variants)
-    addresses: set[tuple[str, str, int, tuple[str, ...]]] = set()
-    for row in rows:
-        if row.treatment.variant not in known:
-            raise UserError(
-                f"the system has no variant {row.treatment.variant!r}: choose from "
-                f"{', '.join(known)}"
-            )
-        address = (row.variant, row.condition, row.seed, row.scenes)
-        if address in addresses:
-            raise UserError(
-                f"two rows of the plan are both called variant {row.variant!r}, "
-                f"condition {row.condition!r}, seed {row.seed}: give them different names"
-            )
-        addresses.add(address)
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from faultpath.run.execution.dispatch import Built, dispatch
 from faultpath.run.execution.recheck import Rechecks, repeat
 from faultpath.run.execution.state import Failure, RunState, Stop
 from faultpath.run.findings import Finding, Recheck
-from faultpath.run.plan import Plan, Task, TaskQueue, Unit, check_rows, units_of
+from faultpath.run.plan import Plan, Task, TaskQueue, Unit, units_of
 from faultpath.run.registry import load_system
 from faultpath.run.store.folder import Manifest, RunFolder, check_same
 from faultpath.run.trials import Trials
@@ -85,7 +85,7 @@ def run_plan(
             scenes up to that analysis.
 
     Raises:
-        UserError: The folder or the plan cannot be run.
+        UserError: The system cannot be built, or the folder cannot be used.
         Stopped: Ctrl-C; everything finished is stored.
         Exception: An error of `faultpath.loop.taps`, when the audit itself is wrong.
     """
@@ -158,15 +158,10 @@ def run_plan(
 
 
 def _units(plan: Plan, built: Built, manifest: Manifest) -> tuple[Unit, ...]:
-    """Return the blocks that a plan takes, run by the code of `manifest`.
-
-    `UserError` for scenes or rows that cannot be run.
-    """
-    library, system = built.library, built.system
+    """Return the blocks that a plan takes, run by the code of `manifest`."""
     fingerprint = f"{manifest.faultpath_version} {manifest.code.digest}"
-    units = units_of(plan, library, system.scenes_a_block(len(library.scenes)), fingerprint)
-    check_rows(plan.rows, system.variants)
-    return units
+    block_size = built.system.scenes_a_block(len(built.library.scenes))
+    return units_of(plan, built.library, block_size, fingerprint)
 
 
 def _attempted(system: System, task: Task) -> Reply:
