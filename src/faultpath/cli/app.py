@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 from importlib.metadata import entry_points
-from inspect import getdoc
+from inspect import getdoc, signature
 from typing import Annotated, Any
 
 import typer
@@ -33,23 +33,18 @@ class Command:
     """Arguments that follow the name in a call."""
     line: str = ""
     """Its line in the list of all verbs; by default its help."""
-    of_a_system: bool = False
-    """Whether it takes the flags of the system that its line names."""
 
 
 _PANELS = {
     "Begin here": (
         Command("demo", runs.demo, "--out runs/demo", "Audit a small system that ships along."),
         Command("init", systems.init, "mine --with numpy", "Write a system of your own to start."),
-        Command(
-            "check", systems.check, _TOY, "Check that a system can be audited.", of_a_system=True
-        ),
+        Command("check", systems.check, _TOY, "Check that a system can be audited."),
         Command(
             "audit",
             runs.audit,
             f"{_ASKED}=0.6 --library carts",
             "Compare a repair with a baseline, module by module and shared.",
-            of_a_system=True,
         ),
         Command(
             "judge",
@@ -65,22 +60,18 @@ _PANELS = {
         ),
     ),
     "More": (
-        Command(
-            "trace", systems.trace, _TOY, "Show which module reads which source.", of_a_system=True
-        ),
+        Command("trace", systems.trace, _TOY, "Show which module reads which source."),
         Command(
             "map",
             runs.reversal_map,
             f"{_ASKED} --against controller,observer --up-to 0.4 --library carts",
             "Compare over the errors of two modules.",
-            of_a_system=True,
         ),
         Command(
             "scan",
             runs.scan,
             f"{_TOY} --variant calibrated --fault gain:scale=1.2 --library carts",
             "Find which errors of a system's inputs cancel.",
-            of_a_system=True,
         ),
         Command(
             "replay",
@@ -125,7 +116,7 @@ def build(arguments: Sequence[str] = ()) -> typer.Typer:
             if isinstance(command, typer.Typer):
                 app.add_typer(command, name=entry.name, **shown)
                 continue
-            if entry.name == verb and entry.of_a_system:
+            if entry.name == verb and {"system", "options"} <= {*signature(command).parameters}:
                 command = with_system_flags(verb, command, rest)
             # Typer would keep the line breaks of a docstring.
             text = " ".join((getdoc(command) or "").split())
