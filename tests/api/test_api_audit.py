@@ -127,11 +127,8 @@ def test_trials_of_an_object_are_never_taken_for_those_of_another(toy):
     ("system", "options", "sentence"),
     [
         (3, {}, "a system is a name, a file or a faultpath.System, not 3"),
-        ("octopus", {}, "there is no system 'octopus'"),
         (TOY, {"options": {"wind": "L3"}}, "'wind': it takes none"),
-        (TOY, {"options": {"wind": ["L3"]}}, "the option 'wind' is a list"),
         (TOY, {"baseline": None}, "baseline: is empty, and must be text"),
-        (TOY, {"repair": "octopus"}, "unknown variant 'octopus'"),
         (TOY, {"scenes": "12"}, "scenes: is '12', and must be a whole number"),
         (TOY, {"sceens": 3}, "did you mean 'scenes'"),
         (TOY, {"seeds": (0, -1)}, "-1 is not a seed"),

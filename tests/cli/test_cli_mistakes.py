@@ -74,7 +74,6 @@ LINES = [
     (["trace", TOY, "--seed", "9" * 30], ["--seed"]),
     (["trace", TOY, "--library", "selection"], ["unknown library 'selection'", "known: carts"]),
     (["check", TOY, "--library", "held-out"], ["unknown library 'held-out'", "known: carts"]),
-    (["check", TOY, "--variants", "blind,,calibrated"], ["--variants", "empty name"]),
     (["audit", TOY, "--library="], ["--library=", "empty"]),
     (["audit", TOY, "--library=a", "--library", "a"], ["--library", "twice"]),
     (["reproduce", "table-9"], ["'table-9'", "table-1, table-2"]),

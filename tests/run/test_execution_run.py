@@ -10,11 +10,9 @@ from toy_plan import FAULT, SCENES, UNITS, plan, rows
 from weighed import ToySystem
 
 from faultpath.core.errors import UserError
-from faultpath.core.files import parquet
 from faultpath.loop import NotDelivered, TapCount, UndeclaredReader
 from faultpath.run.execution.runner import RunResult, run_plan
 from faultpath.run.plan import Plan, Row, TaskQueue, Treatment, Unit, units_of
-from faultpath.run.store import tables
 from faultpath.run.store.folder import RunFolder, read_outcomes
 from faultpath.run.store.tables import decode_traces, traces_of
 from faultpath.run.trials import Trial
@@ -108,19 +106,6 @@ def test_every_row_brings_what_its_taps_did(whole):
     assert deliveries.at("observed", "shared")[0] == both
     with pytest.raises(KeyError):
         deliveries.at("observed", "elsewhere")
-
-
-def test_a_shard_without_a_delivery_log_is_named_and_run_again(whole, tmp_path, monkeypatch):
-    with monkeypatch.context() as patch:
-        encode = parquet.encode
-        patch.setattr(tables, "encode", lambda columns, values, notes=None: encode(columns, values))
-        run_plan(plan(), tmp_path, workers=0)
-    notices: list[str] = []
-    after = run_plan(plan(), tmp_path, workers=0, notice=notices.append)
-    assert after.blocks_kept == 0
-    assert len(notices) == after.blocks_computed
-    assert all("is damaged (it was written under another key)" in notice for notice in notices)
-    assert after.deliveries == whole[0].deliveries
 
 
 def test_bookkeeping_grows_with_the_rows_and_not_with_rows_times_blocks(tmp_path, monkeypatch):
