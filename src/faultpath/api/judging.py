@@ -20,7 +20,7 @@ from faultpath.api.folders import MADE_FROM, RECORD, SYSTEM, as_text, read_prove
 from faultpath.api.job import Job, with_question_signature
 from faultpath.api.runs import Run
 from faultpath.core.errors import UserError
-from faultpath.core.files.atomic import begin, locked, write_text
+from faultpath.core.files.atomic import check_free, is_run, locked, make_folder, write_text
 from faultpath.core.text import series
 from faultpath.interface import Interface
 from faultpath.report.inputs import ReportInput
@@ -70,11 +70,11 @@ def judge(
     if notice := _modules_notice(paired, shown):
         shown.say(notice)
     folder = question.folder or _folder(paired, sources)
-    _check_kind(folder)
+    _check_folder(folder)
     record = decide(
         paired.question, paired.facts, paired.conditions, paired.trials, paired.findings
     )
-    begin(folder)
+    make_folder(folder)
     record = with_stored(folder, record)
     with locked(folder, shown.say):
         (folder / PROVENANCE).unlink(missing_ok=True)  # of a judgement before, of other trials
@@ -91,13 +91,16 @@ def judge(
     return run
 
 
-def _check_kind(folder: Path) -> None:
-    """Raise `UserError` for the folder of a run that ran trials itself, or of a damaged one."""
+def _check_folder(folder: Path) -> None:
+    """Raise `UserError` for the folder of a run that ran trials itself, of a damaged one, or with
+    files of no run."""
     ran = (folder / "manifest.json").exists()
     if not ran and (folder / PROVENANCE).exists():
         ran = bool(read_provenance(folder).code.sources)
     if ran:
         raise UserError(f"{folder} holds a run that is no judgement: give another folder.")
+    if not is_run(folder):
+        check_free(folder)
 
 
 def _are_paths(results: object) -> bool:

@@ -74,13 +74,6 @@ def is_run(folder: Path) -> bool:
     return False
 
 
-def begin(folder: Path) -> None:
-    """Make the folder of a run, or resume in it; `UserError` if it holds files of no run."""
-    if not is_run(folder):
-        check_free(folder)
-    make_folder(folder)
-
-
 def check_free(folder: Path) -> None:
     """Raise `UserError` for a folder in which a run would begin among other files."""
     if names := sorted(file.name for file in folder.glob("*") if not file.name.startswith(".")):
