@@ -79,9 +79,9 @@ def audit(
     """
     question, chosen, library, display = begin("audit", AuditCall, system, arguments, progress)
     analysis = audit_analysis(chosen.system, chosen.spec, question, library)
-    versions = question.baseline, question.repair
+    variants = question.baseline, question.repair
     with job_of(question, chosen, analysis, display) as job:
-        shown = system_shown(chosen.system, versions, analysis.plan.scenes)
+        shown = system_shown(chosen.system, variants, analysis.plan.scenes)
         _, result = job.trials(analysis)
         record = with_stored(job.folder, analysis.conclude(result.trials, result.deliveries))
         recorded = _kept_signals(job.folder, result)
