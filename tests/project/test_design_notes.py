@@ -19,6 +19,7 @@ from faultpath_quadrotor.models import predictor
 from faultpath_quadrotor.options import QuadrotorOptions
 from faultpath_quadrotor.perception import labels
 from faultpath_quadrotor.planners import CostWeights
+from faultpath_quadrotor.plant.wind import ELEVATION_DEG
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.training.catalogue import RECONSTRUCTIONS
@@ -134,7 +135,7 @@ def computed() -> Iterator[tuple[str, str, Any]]:
     yield "perception", "truncated to [-#, #] m", (-labels.LOWEST_M, labels.HIGHEST_M)
     yield "plant", "thrust-to-weight #.", round(VehicleParameters().thrust_to_weight, 2)
     yield "plant", "ranges has #,", round(weakest, 2)
-    yield "plant", "within +-# degrees", PLATFORM.winds.levels["L3"].elevation_deg
+    yield "plant", "within +-# degrees", ELEVATION_DEG
     yield "predictors", "# kinds behind", len({type(predictor(name, None)) for name in PREDICTORS})
     yield "predictors", "paper's #k and #k", (thousands("wm-a"), thousands("wm-u"))
     yield "reconstruction", "The # windows of the wind", COUNTS["wind"]
