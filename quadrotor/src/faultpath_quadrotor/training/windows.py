@@ -61,8 +61,6 @@ class Windows:
     """[3, W]"""
     motor_thrust_n: Tensor
     """Sum of the motors before the thrust scale, [33, W]."""
-    episode: Tensor
-    """Index of the episode in its pool, long [W]."""
     ids: tuple[str, ...]
     """Pool, episode, and window in the episode: "nominal/00012/2"."""
 
@@ -171,8 +169,6 @@ def cut(pool: FlightData, stride: int = STRIDE, length: int = COMMANDS) -> Windo
         return torch.from_numpy(np.stack([pool.values[channel][at] for channel in channels]))
 
     def tensor(name: str) -> Tensor:
-        if name == "episode":
-            return torch.from_numpy(episode)
         if name in pool.vehicles:
             return torch.from_numpy(np.take(pool.vehicles[name], episode, axis=-1)).float()
         values = signal(name)
