@@ -5,7 +5,7 @@ import pytest
 from faultpath_quadrotor.platform import PLATFORM, FlightSettings
 from faultpath_quadrotor.training import flight
 from faultpath_quadrotor.training.flight import collect, fly
-from faultpath_quadrotor.training.recorded import COMPONENTS, SIGNALS, FlightData
+from faultpath_quadrotor.training.recorded import SIGNALS, FlightData
 from faultpath_quadrotor.vehicle import COLLECTIVE_MAX_N, CONTROL_RATE_HZ, RATE_LIMIT_RADPS
 
 from faultpath.core.errors import UserError
@@ -105,7 +105,7 @@ def test_a_damaged_pool_is_not_read(place, tmp_path):
 
 
 def signal(flights, name):
-    return flights.values[[COMPONENTS.index(component) for component in SIGNALS[name]]]
+    return flights.values[SIGNALS[name]]
 
 
 @pytest.mark.parametrize("pool", ["nominal", "wind"])

@@ -16,7 +16,7 @@ from faultpath_quadrotor.predictors.base import Take, history, predictor_inputs
 from faultpath_quadrotor.predictors.module import STEPS
 from faultpath_quadrotor.predictors.rollout import unroll
 from faultpath_quadrotor.state import State
-from faultpath_quadrotor.training.recorded import COMPONENTS, SIGNALS, FlightData
+from faultpath_quadrotor.training.recorded import SIGNALS, FlightData
 
 HISTORY = STEPS
 HORIZON = 20  # paper, Section IV-A
@@ -164,9 +164,8 @@ def cut(pool: FlightData, stride: int = STRIDE, length: int = COMMANDS) -> Windo
     rows = np.arange(length + 1)[:, None] + pool.first_row[episode] + first
 
     def signal(name: str) -> Tensor:
-        channels = [COMPONENTS.index(component) for component in SIGNALS[name]]
         at = rows[:-1] if name == "command" else rows
-        return torch.from_numpy(np.stack([pool.values[channel][at] for channel in channels]))
+        return torch.from_numpy(np.stack([values[at] for values in pool.values[SIGNALS[name]]]))
 
     def tensor(name: str) -> Tensor:
         if name in pool.vehicles:
