@@ -137,8 +137,9 @@ def test_commands_respect_the_vehicle_s_limits(pool):
 
 def test_an_episode_ends_with_its_last_state_in_bounds(monkeypatch):
     of_length(monkeypatch, 40)
-    tight = FlightSettings(tilt_limit_deg=35.0)
-    flights = fly("nominal", range(64), 0, tight)
+    tight = PLATFORM.model_copy(update={"collection": FlightSettings(tilt_limit_deg=35.0)})
+    monkeypatch.setattr(flight, "PLATFORM", tight)
+    flights = fly("nominal", range(64), 0)
     short = np.flatnonzero(flights.steps < 40)
     assert len(short) > 10
     up = signal(flights, "rotation")[8]

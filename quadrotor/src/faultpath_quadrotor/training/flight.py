@@ -46,16 +46,13 @@ class _Start:
 
 @torch.inference_mode()
 @native.using(native.PORTABLE)
-def fly(
-    pool: str, episodes: Sequence[int], seed: int, settings: FlightSettings | None = None
-) -> Flights:
+def fly(pool: str, episodes: Sequence[int], seed: int) -> Flights:
     """Fly some episodes of a pool together; the bits of each do not depend on the others.
 
     The draws of an episode are keyed by pool, episode and seed, and lanes are padded to whole
     vectors. All fly in free air for the same time, diverged or not; nothing passes a tap.
     """
-    if settings is None:
-        settings = PLATFORM.collection
+    settings = PLATFORM.collection
     starts = [_draw(pool, episode, seed, settings) for episode in episodes]
     lanes = padded_lanes(len(starts))
     vehicle = Vehicle.stack([start.vehicle for start in starts]).take(lanes)
