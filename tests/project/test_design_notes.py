@@ -19,10 +19,12 @@ from faultpath_quadrotor.models import predictor
 from faultpath_quadrotor.options import QuadrotorOptions
 from faultpath_quadrotor.perception import labels
 from faultpath_quadrotor.planners import CostWeights
+from faultpath_quadrotor.plant.wind import ELEVATION_DEG
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.system import Quadrotor
+from faultpath_quadrotor.training.catalogue import RECONSTRUCTIONS
 from faultpath_quadrotor.training.corruption import DCC_HALF_RANGE
-from faultpath_quadrotor.training.reconstruction_task import MODELS, ReconstructionTask
+from faultpath_quadrotor.training.reconstruction_task import ReconstructionTask
 from faultpath_quadrotor.training.windows import COUNTS
 from faultpath_quadrotor.vehicle import VehicleParameters
 
@@ -133,7 +135,7 @@ def computed() -> Iterator[tuple[str, str, Any]]:
     yield "perception", "truncated to [-#, #] m", (-labels.LOWEST_M, labels.HIGHEST_M)
     yield "plant", "thrust-to-weight #.", round(VehicleParameters().thrust_to_weight, 2)
     yield "plant", "ranges has #,", round(weakest, 2)
-    yield "plant", "within +-# degrees", PLATFORM.winds.levels["L3"].elevation_deg
+    yield "plant", "within +-# degrees", ELEVATION_DEG
     yield "predictors", "# kinds behind", len({type(predictor(name, None)) for name in PREDICTORS})
     yield "predictors", "paper's #k and #k", (thousands("wm-a"), thousands("wm-u"))
     yield "reconstruction", "The # windows of the wind", COUNTS["wind"]
@@ -198,7 +200,7 @@ def test_tables_have_a_line_for_each() -> None:
     contracts = PROJECT["tool"]["importlinter"]["contracts"]
     layers = [name for layer in contracts[0]["layers"] for name in layer.split(" | ")]
     assert first_column("CONTRIBUTING", "room of the engine") == layers
-    assert first_column("reconstruction", "model") == list(MODELS)
+    assert first_column("reconstruction", "model") == [entry.name for entry in RECONSTRUCTIONS]
     costs = CostWeights.model_fields.keys() - {"margin_m", "v_max_mps"}
     assert len(first_column("platform", "term")) == len(costs)
     listed = re.findall(r"\]\((\w+)\.md\)", PAGES["README"].read_text("utf-8"))

@@ -106,7 +106,7 @@ def test_labels_are_those_of_the_stored_images_and_samples_of_recipe_and_scene_a
         assert torch.equal(label, samples.clearance[i])
     assert between_pixels(samples.points.movedim(1, 0)).float().mean() > 0.4
     assert 0.2 < (samples.clearance < 0).float().mean() < 0.5
-    scene = load_library("training")[42]
+    scene = load_library("training").scenes[42]
     again = clearance_task.draw(SMALL, scene)
     kept = samples.take((samples.scene == 42).nonzero()[:, 0])
     for field in fields(Samples):

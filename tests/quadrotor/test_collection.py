@@ -5,7 +5,7 @@ import pytest
 from faultpath_quadrotor.platform import PLATFORM, FlightSettings
 from faultpath_quadrotor.training import flight
 from faultpath_quadrotor.training.flight import collect, fly
-from faultpath_quadrotor.training.recorded import COMPONENTS, SIGNALS, FlightData
+from faultpath_quadrotor.training.recorded import SIGNALS, FlightData
 from faultpath_quadrotor.vehicle import COLLECTIVE_MAX_N, CONTROL_RATE_HZ, RATE_LIMIT_RADPS
 
 from faultpath.core.errors import UserError
@@ -105,7 +105,7 @@ def test_a_damaged_pool_is_not_read(place, tmp_path):
 
 
 def signal(flights, name):
-    return flights.values[[COMPONENTS.index(component) for component in SIGNALS[name]]]
+    return flights.values[SIGNALS[name]]
 
 
 @pytest.mark.parametrize("pool", ["nominal", "wind"])
@@ -137,8 +137,9 @@ def test_commands_respect_the_vehicle_s_limits(pool):
 
 def test_an_episode_ends_with_its_last_state_in_bounds(monkeypatch):
     of_length(monkeypatch, 40)
-    tight = FlightSettings(tilt_limit_deg=35.0)
-    flights = fly("nominal", range(64), 0, tight)
+    tight = PLATFORM.model_copy(update={"collection": FlightSettings(tilt_limit_deg=35.0)})
+    monkeypatch.setattr(flight, "PLATFORM", tight)
+    flights = fly("nominal", range(64), 0)
     short = np.flatnonzero(flights.steps < 40)
     assert len(short) > 10
     up = signal(flights, "rotation")[8]

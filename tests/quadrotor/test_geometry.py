@@ -60,7 +60,7 @@ def surface(scene: Scene, per_m2: float) -> np.ndarray:
 
 @pytest.mark.parametrize("index", range(4))
 def test_in_free_space_the_distance_is_that_to_the_nearest_of_many_surface_points(index):
-    scene = load_library("training")[index]
+    scene = load_library("training").scenes[index]
     points = spread([scene], 3000)
     distance = Geometry.stack([scene]).distance(points)[0].numpy()
     nearest, _ = cKDTree(surface(scene, 250.0)).query(points[:, 0].numpy().T)

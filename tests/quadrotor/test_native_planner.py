@@ -8,7 +8,6 @@ import torch
 from faultpath_quadrotor import native, so3
 from faultpath_quadrotor.models import clearance_model
 from faultpath_quadrotor.perception import DepthClearance
-from faultpath_quadrotor.perception.camera import CaptureFrame
 from faultpath_quadrotor.planners import (
     AutoregressiveSampler,
     CostWeights,
@@ -82,8 +81,8 @@ def test_clearance_is_the_portable_one(isa: str, stream: torch.Generator) -> Non
     ahead = torch.randn(3, 2, 320, generator=stream)
     ahead[0] = 3 * ahead[0].abs()  # most of them in view
     chosen = [2, 0]
-    frame = CaptureFrame(position[chosen].T, rotation[chosen].movedim(0, -1))
-    points = so3.rotate(frame.rotation[..., None], ahead) + frame.position[..., None]
+    eye, axes = position[chosen].T, rotation[chosen].movedim(0, -1)
+    points = so3.rotate(axes[..., None], ahead) + eye[..., None]
     for clearance in (portable, compiled):
         clearance.capture(depth, position, rotation)
     mine, reference = (c.query(points, chosen) for c in (compiled, portable))

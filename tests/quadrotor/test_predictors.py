@@ -117,9 +117,10 @@ def delivered(seed, mass, scale):
 
 
 @pytest.mark.parametrize(("mass", "scale"), [(1.0, 1.0), (1.1, 0.9), (0.9, 1.1)])
-def test_unfiltered_estimate_recombines_to_the_observed_acceleration(mass, scale):
+def test_unfiltered_estimate_recombines_to_the_observed_acceleration(mass, scale, monkeypatch):
     """a_0 + B w_raw = a_obs whatever the calibration (paper, Eq. 2)."""
-    observer = DisturbanceObserver(low_pass=1.0, drag_kgps=NOMINAL_DRAG_KGPS)
+    monkeypatch.setattr("faultpath_quadrotor.reconstruction.observer.LOW_PASS", 1.0)
+    observer = DisturbanceObserver(NOMINAL_DRAG_KGPS)
     first, second = (delivered(seed, mass=mass, scale=scale) for seed in (1, 2))
     wind = observer.wind(observer.update(observer.begin(first), second))
     pushed = LinearDrag(NOMINAL_DRAG_KGPS).force(second["attitude", "nominal_model"], wind) / mass

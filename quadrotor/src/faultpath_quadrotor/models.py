@@ -132,10 +132,9 @@ def estimator(name: str, fixes: Fixes = Fixes.OPTICAL, device: torch.device = CP
 
 
 def _trained(model: Model, name: str, seed: int | None) -> Model:
-    if seed is not None and isinstance(
-        model, AnchoredPredictor | UnanchoredPredictor | RecurrentReconstruction
-    ):
-        _fill(model.network, name, seed)
+    network = getattr(model, "network", None)
+    if seed is not None and network is not None:
+        _fill(network, name, seed)
     return model
 
 

@@ -34,6 +34,12 @@ class Batched:
         """Return the lanes that an index picks from the last batch axis."""
         return self.map(lambda x: x[..., index])
 
+    @classmethod
+    def together(cls, singles: Sequence[Self]) -> Self:
+        """Return values without batch axes as one batch, in their order."""
+        names = [field.name for field in fields(cast(Any, cls))]
+        return cls(**{n: torch.stack([getattr(x, n) for x in singles], dim=-1) for n in names})
+
     def to(self, target: torch.dtype | torch.device | str) -> Self:
         """Return it in another dtype or on another device."""
         return self.map(lambda x: x.to(target))

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping, Sequence
-from functools import cache, lru_cache
+from functools import lru_cache
 from pathlib import Path
 from typing import Self
 
@@ -125,7 +125,9 @@ class Quadrotor(LoopSystem):
     def data_files(self) -> Sequence[Path]:
         """See `System.data_files`: interface, weights and their cards, the kernels' sources."""
         own = (file for part in self.user_parts.values() for file in part.data_files)
-        return (*_weights(shipped_folder()), Path("interface.yaml"), Path("native/source"), *own)
+        folder = shipped_folder()
+        weights = sorted((*folder.glob("*.json"), *folder.glob("*.safetensors")))
+        return (*weights, Path("interface.yaml"), Path("native/source"), *own)
 
     @property
     @override
@@ -205,11 +207,6 @@ class Quadrotor(LoopSystem):
         if scene not in self._scenes:
             raise UserError(f"there is no scene '{scene}' in its libraries.")
         return self._scenes[scene]
-
-
-@cache
-def _weights(folder: Path) -> tuple[Path, ...]:
-    return tuple(sorted((*folder.glob("*.json"), *folder.glob("*.safetensors"))))
 
 
 @lru_cache(maxsize=4)  # a library's blocks; each treatment flies over the same ones

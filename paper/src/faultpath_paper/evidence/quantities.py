@@ -71,8 +71,8 @@ class Block:
         recording = self.recording
         system = quadrotor(recording)
         system.library(recording.library)
-        flights = record_flights(system, recording.variant, self.scenes, recording.seed)
-        store(self.rows(folder), flights)
+        flown = partial(record_flights, system, recording.variant, self.scenes, recording.seed)
+        store(self.rows(folder), flown)
 
 
 @dataclass(frozen=True)

@@ -7,14 +7,12 @@ sees the point `depth * ray`, where the first component of every ray is one. The
 the camera's pose when the image was taken.
 """
 
-from dataclasses import dataclass
 from math import radians, tan
 
 import torch
 from torch import Tensor
 
 from faultpath_quadrotor import so3
-from faultpath_quadrotor.state import Batched
 
 WIDTH = 64
 HEIGHT = 36
@@ -72,13 +70,7 @@ def rays() -> Tensor:
     )
 
 
-@dataclass(frozen=True)
-class CaptureFrame(Batched):
-    """Where the camera was when the image was taken; S scenes."""
-
-    position: Tensor  # world frame, m, `[3, S]`
-    rotation: Tensor  # camera to world, `[3, 3, S]`
-
-    def from_world(self, points: Tensor) -> Tensor:
-        """Return world points `[3, S, N]` in the capture frame, m."""
-        return so3.rotate_back(self.rotation[..., None], points - self.position[..., None])
+def captured(points: Tensor, position: Tensor, rotation: Tensor) -> Tensor:
+    """Return world points `[3, S, N]` in capture frames at `[S, 3]` of attitudes `[S, 3, 3]`, m."""
+    eye, axes = (part.movedim(0, -1).contiguous()[..., None] for part in (position, rotation))
+    return so3.rotate_back(axes, points - eye)

@@ -1,7 +1,6 @@
 """The two sources of clearance: the geometry itself, and what a model makes of a depth image."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 
 import torch
@@ -13,7 +12,7 @@ from faultpath_quadrotor import native
 from faultpath_quadrotor.batching import Chunk
 from faultpath_quadrotor.device import CPU, host_readable
 from faultpath_quadrotor.native.kernel_args import covered, is_exactly, tell_portable, unlike
-from faultpath_quadrotor.perception.camera import FOCAL_PX, HEIGHT, WIDTH, CaptureFrame, mounted
+from faultpath_quadrotor.perception.camera import FOCAL_PX, HEIGHT, WIDTH, captured, mounted
 from faultpath_quadrotor.perception.clearance import ClearanceModel
 from faultpath_quadrotor.perception.compiled import CompiledClearance, CompiledEncoder
 from faultpath_quadrotor.predictors.rollout import Predicted
@@ -28,27 +27,6 @@ class PerceptionSettings(Frozen):
     may go there where there is nothing better, but would rather look first."""
     near_m: float = 0.4
     """Around the camera the field of view does not matter: the vehicle has just come through."""
-
-
-@dataclass(frozen=True)
-class _Captured:
-    """An image as the model sees it, and where it was taken from, single precision."""
-
-    code: Tensor
-    """`[64, B]`"""
-    position: Tensor
-    """`[B, 3]`"""
-    rotation: Tensor
-    """`[B, 3, 3]`"""
-
-    def take(self, scenes: Tensor) -> "_Captured":
-        code = self.code[:, scenes].contiguous()
-        return _Captured(code, self.position[scenes], self.rotation[scenes])
-
-    def frame(self) -> CaptureFrame:
-        return CaptureFrame(
-            self.position.movedim(0, -1).contiguous(), self.rotation.movedim(0, -1).contiguous()
-        )
 
 
 class DepthClearance:
@@ -71,7 +49,7 @@ class DepthClearance:
     ) -> None:
         self._model = model.eval()
         self._settings = settings or PerceptionSettings()
-        self._captured: _Captured | None = None
+        self._captured: tuple[Tensor, Tensor, Tensor] | None = None
         kernels = native.kernels_on(device)
         if kernels is None or not covered(self, DepthClearance):
             return
@@ -89,7 +67,7 @@ class DepthClearance:
         They were taken from positions `[B, 3]`, m, by cameras of attitudes `[B, 3, 3]`.
         """
         encode = self._model.encode if self.encoder is None else self.encoder
-        self._captured = _Captured(encode(depth.float()), position.float(), rotation.float())
+        self._captured = encode(depth.float()), position.float(), rotation.float()
 
     @torch.no_grad()
     def query(self, points: Tensor, scenes: Sequence[int] | Tensor) -> Tensor:
@@ -99,11 +77,12 @@ class DepthClearance:
         """
         if self._captured is None:
             raise RuntimeError("nothing was captured yet: call `capture` before `query`")
-        captured = self._captured.take(torch.as_tensor(scenes))
+        (codes, position, rotation), index = self._captured, torch.as_tensor(scenes)
+        code, pose = codes[:, index].contiguous(), (position[index], rotation[index])
         if self.queries is not None:
-            return self.queries(captured.code, captured.position, captured.rotation, points)
-        local = captured.frame().from_world(points)
-        clearance, settings = self._model.query(captured.code, local), self._settings
+            return self.queries(code, *pose, points)
+        local = captured(points, *pose)
+        clearance, settings = self._model.query(code, local), self._settings
         known = in_view(local) | near(local, settings.near_m)
         return torch.where(known, clearance, clearance.clamp(max=settings.unseen_m))
 

@@ -58,10 +58,6 @@ class _View(Batched):
     rounding: Tensor  # rounding radii, `[K, L]`, m
     seen: Tensor  # whether any of a solid may be in the image, `[K, L]`
 
-    def numbers(self) -> Tensor:
-        """Return eye, axes, half extents and rounding as one table, `[16, K, L]`."""
-        return torch.cat((self.eye, self.axes.flatten(0, 1), self.half, self.rounding[None]))
-
 
 class DepthRenderer:
     """Draws what the cameras of a block of scenes see."""
@@ -124,9 +120,9 @@ class DepthRenderer:
 
         Only the device knows how many are in view.
         """
-        arena = view.numbers()[:, 0].float()[..., None, None]
+        arena = view.map(lambda part: part[..., 0, :].float()[..., None, None])
         image = self._box(arena)[1].clamp_(0, RANGE_M)
-        solids = view.numbers().float().flatten(1)[..., None, None]
+        solids = view.map(lambda part: part.float().flatten(-2)[..., None, None])
         pillar = view.rounding > 0
         for visible, interval in (
             (view.seen & ~pillar, self._box),
@@ -138,29 +134,23 @@ class DepthRenderer:
             torch.minimum(image, nearest, out=image)
         return image
 
-    def _box(self, solid: Tensor) -> tuple[Tensor, Tensor]:
-        eye, axes, half = solid[0:3], solid[3:12].unflatten(0, (3, 3)), solid[12:15]
-        return self._slabs(eye, axes, half)
+    def _box(self, solid: _View) -> tuple[Tensor, Tensor]:
+        return self._slabs(solid.eye, solid.axes, solid.half)
 
-    def _pillar(self, solid: Tensor) -> tuple[Tensor, Tensor]:
+    def _pillar(self, solid: _View) -> tuple[Tensor, Tensor]:
         """Cut the chord of the circle out of the slab of heights.
 
         With the eye e and the direction d in plan the chord is (-e.d +- sqrt(r^2 d.d - (e x d)^2))
         / d.d; the cross product keeps the digits that the usual discriminant cancels.
         """
-        eye, axes, half, radius = (
-            solid[0:3],
-            solid[3:12].unflatten(0, (3, 3)),
-            solid[12:15],
-            solid[15],
-        )
-        enter, leave = self._slabs(eye[2:], axes[2:], half[2:])
+        eye, axes = solid.eye, solid.axes
+        enter, leave = self._slabs(eye[2:], axes[2:], solid.half[2:])
         direction = self._directions(axes[:2])
         x, y = direction.unbind(0)
         along = (x * eye[0]).add_(y * eye[1]).neg_()
         across = (y * eye[0]).sub_(x * eye[1])
         square = direction.square_().sum(0).add_(_NOT_ZERO)
-        root = (square * radius.square()).sub_(across.square_())
+        root = (square * solid.rounding.square()).sub_(across.square_())
         missed = root < 0
         root.clamp_(min=0).sqrt_()
         chord_in, chord_out = (along - root).div_(square), along.add_(root).div_(square)

@@ -62,7 +62,11 @@ class PlannerModule(Module):
         hover: Tensor = inputs[HOVER_THRUST]
         hovering = planner.initial_plan(hover)
         plan = hovering.clone() if plan is None else plan
-        chunks = self._chunks(tuple(_planned(inputs)))
+        # Only the device knows which trials run there: it plans for all, and a scene's plan no
+        # longer counts once its trial has ended.
+        running, everyone = inputs.running, range(len(inputs.running))
+        known = host_readable(running.device)
+        chunks = self._chunks(tuple(running.nonzero()[:, 0].tolist() if known else everyone))
 
         searches = [planner.init(plan[..., c.rows], hover[c.rows]) for c in chunks]
         for iteration in range(planner.iterations):
@@ -93,15 +97,3 @@ def _scored(
     parts = zip(chunks, searches, predicted.rollouts, commands, strict=True)
     for chunk, search, rollout, drawn in parts:
         yield Scored(rollout, drawn, clearance[chunk.rows], goal[:, chunk.rows], search.hover)
-
-
-def _planned(inputs: Inputs) -> Sequence[int]:
-    """Return the scenes to plan for.
-
-    Only the device knows which trials run there. All scenes are planned, and a scene's plan no
-    longer counts once its trial has ended.
-    """
-    running = inputs.running
-    if host_readable(running.device):
-        return running.nonzero()[:, 0].tolist()
-    return range(len(running))

@@ -40,26 +40,6 @@ def column(values: tuple, like: Tensor) -> Tensor:
     return constant.reshape(*constant.shape, *(1,) * like.ndim)
 
 
-def acceleration_per_thrust(vehicle: Vehicle) -> Tensor:
-    """Return realised acceleration per newton of each motor, [4, 4, *b].
-
-    Row 0 is m/s^2 along body z and carries the thrust scale, rows 1-3 are rad/s^2 and carry the
-    torque scale: each multiplies the realised value, not the commanded one.
-    """
-    thrust = vehicle.thrust_scale / vehicle.mass_kg
-    torque = vehicle.torque_scale / vehicle.inertia_kgm2
-    return column(WRENCH_PER_THRUST, vehicle.mass_kg) * torch.cat((thrust[None], torque))[:, None]
-
-
-def lag_weights(time_constant_s: Tensor, dt_s: float) -> tuple[Tensor, Tensor]:
-    """Return what is left of the gap to a constant command at a step's end, and on average, [*b].
-
-    Both exact: exp(-h) and (1 - exp(-h)) / h with h the step over the time constant.
-    """
-    h = dt_s / time_constant_s
-    return torch.exp(-h), -torch.expm1(-h) / h
-
-
 def gyroscopic_coupling(vehicle: Vehicle) -> Tensor:
     """Return (Iy - Iz) / Ix and its cyclic companions, [3, *b]."""
     x, y, z = vehicle.inertia_kgm2.unbind(0)
@@ -103,45 +83,28 @@ class RateLoop:
         wrench = column(WRENCH_PER_THRUST, like)
         inverse = wrench / (wrench * wrench).sum(1, keepdim=True)
         self.per_acceleration = inverse[1:] * vehicle.inertia_kgm2[:, None]
-        self._gain = column(RATE_GAIN_PER_S, like)
+        self.gain = column(RATE_GAIN_PER_S, like)
         self._roll, self._pitch = self.per_acceleration[0], self.per_acceleration[1]
         self._yaw = self.per_acceleration[2, 0]
         self._ceiling = column((MOTOR_THRUST_MAX_N,), like)
         self._spin = column(WRENCH_PER_THRUST[3], like).sign()
-
-    def target(self, rate_command: Tensor) -> Tensor:
-        """Return K times the command [3, *b]: constant while the command is."""
-        return self._gain * rate_command
 
     def motor_commands(
         self, level: Tensor, target: Tensor, rate: Tensor, gyroscopic: Tensor
     ) -> Tensor:
         """Return the four motors' commands, [4, *b] N, each within its limits.
 
-        `level` [*b] is a quarter of the collective command in N, `target` [3, *b] comes from
-        `target`, `rate` [3, *b] is the body rate and `gyroscopic` [3, *b] the angular
+        `level` [*b] is a quarter of the collective command in N, `target` [3, *b] is `gain` times
+        the rate command, `rate` [3, *b] the body rate and `gyroscopic` [3, *b] the angular
         acceleration that it causes by itself, rad/s^2.
         """
-        acceleration = torch.addcmul(target, self._gain, rate, value=-1.0).sub_(gyroscopic)
+        acceleration = torch.addcmul(target, self.gain, rate, value=-1.0).sub_(gyroscopic)
         roll, pitch, yaw = acceleration.unbind(0)
         thrusts = torch.addcmul(level, self._roll, roll).addcmul_(self._pitch, pitch)
         thrusts = thrusts.clamp_(0.0, MOTOR_THRUST_MAX_N)
         room = torch.minimum(thrusts, self._ceiling - thrusts).amin(0)
         stroke = torch.clamp(self._yaw * yaw, -room, room)
         return thrusts.addcmul_(self._spin, stroke)
-
-
-def relaxation(vehicle: Vehicle, dt_s: float) -> Tensor:
-    """Return the part of the air-relative velocity that drag takes in one step, [3, *b].
-
-    Exact for a fixed attitude: 1 - exp(-c dt / m) along each body axis.
-    """
-    return -torch.expm1(vehicle.drag_kgps * (-dt_s / vehicle.mass_kg))
-
-
-def velocity_change(rotation: Tensor, air_velocity: Tensor, relaxed: Tensor) -> Tensor:
-    """Return the world-frame velocity [3, *b] that drag adds for air-relative w - v [3, *b]."""
-    return so3.rotate(rotation, so3.rotate_back(rotation, air_velocity).mul_(relaxed))
 
 
 class TorchPlant(Plant):
@@ -161,13 +124,20 @@ class TorchPlant(Plant):
         self._dt_s = dt_s
         self._rate_limit = column(RATE_LIMIT_RADPS, like)
         self._loop = RateLoop(vehicle)
-        self._left_end, self._left_mean = lag_weights(vehicle.motor_time_constant_s, dt_s)
+        # What is left of the gap to a constant command at a step's end, and on average over it.
+        h = dt_s / vehicle.motor_time_constant_s
+        self._left_end, self._left_mean = torch.exp(-h), -torch.expm1(-h) / h
         self._coupling = gyroscopic_coupling(vehicle)
+        # Realised acceleration per newton of each motor, [4, 4, *b]: along body z in m/s^2, then
+        # about the axes in rad/s^2. The scales multiply what is realised, not what is commanded.
+        realised = (vehicle.thrust_scale / vehicle.mass_kg)[None]
+        realised = torch.cat((realised, vehicle.torque_scale / vehicle.inertia_kgm2))
+        self._acceleration = column(WRENCH_PER_THRUST, like) * realised[:, None]
         # The attitude in mid step is taken as the mean of both ends, which is second order. The
         # step below uses their sum; the halves that this leaves out are in these constants.
-        self._acceleration = acceleration_per_thrust(vehicle)
         self._acceleration[0] *= 0.5 * dt_s * 0.5
-        self._relaxed = relaxation(vehicle, dt_s) * 0.25
+        # Part of the air-relative velocity that drag takes along each body axis.
+        self._relaxed = -torch.expm1(vehicle.drag_kgps * (-dt_s / vehicle.mass_kg)) * 0.25
         self._gravity_kick = column((0.0, 0.0, -GRAVITY_MPS2 * 0.5 * dt_s), like)
         kernels = native.kernels_on(like.device)
         fits = like.ndim == 1 and like.dtype == torch.float64
@@ -185,7 +155,7 @@ class TorchPlant(Plant):
             return self._compiled.advance(plant_state, command, winds)
         level = 0.25 * command[0].clamp(0.0, COLLECTIVE_MAX_N)
         rate = torch.clamp(command[1:], -self._rate_limit, self._rate_limit)
-        target = self._loop.target(rate)
+        target = self._loop.gain * rate
         for wind_mps in winds.unbind(0):
             plant_state = self._step(plant_state, level, target, wind_mps)
         return plant_state
@@ -214,7 +184,7 @@ class TorchPlant(Plant):
         twice_middle = state.rotation + rotation
         kick = (twice_middle[:, 2] * kick_and_torque[0]).add_(self._gravity_kick)
         velocity = state.velocity + kick
-        drag = velocity_change(twice_middle, wind_mps - velocity, self._relaxed)
-        velocity = velocity.add_(drag).add_(kick)
+        air = so3.rotate_back(twice_middle, wind_mps - velocity).mul_(self._relaxed)
+        velocity = velocity.add_(so3.rotate(twice_middle, air)).add_(kick)
         position = torch.add(state.position, state.velocity + velocity, alpha=0.5 * dt_s)
         return PlantState(State(position, velocity, rotation, rate), thrusts)

@@ -8,8 +8,6 @@ that turns lengths into times is a constant of the level rather than the vehicle
 """
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,21 +19,9 @@ Array = NDArray[np.float64]
 
 CRUISE_MPS = 2.5
 """Typical speed of the vehicle, for the reference airspeed."""
+ELEVATION_DEG = 20.0
+"""Most that the sustained flow of a level leaves the horizontal, uniform in solid angle."""
 GUST_DURATION_S = (0.8, 2.0)
-
-
-@dataclass(frozen=True)
-class WindLevel:
-    """How strong the wind of a level is and how far it may leave the horizontal."""
-
-    mean_mps: float
-    elevation_deg: float = 20.0
-    """The sustained flow's elevation is uniform in solid angle within plus and minus this."""
-
-    @property
-    def reference_airspeed_mps(self) -> float:
-        """Airspeed that turns length scales into times: level wind and cruise at right angles."""
-        return math.hypot(self.mean_mps, CRUISE_MPS)
 
 
 class Winds(Frozen):
@@ -55,11 +41,6 @@ class Winds(Frozen):
     """Peak of the gust."""
     gust_onset_s: Range = (0.5, 4.0)
 
-    @property
-    def levels(self) -> Mapping[str, WindLevel]:
-        """The evaluation's levels by name."""
-        return {f"L{i}": WindLevel(mean) for i, mean in enumerate(self.means_mps)}
-
     def series(self, level: str, index: int, duration_s: float) -> Array:
         """Return an evaluation scene's wind at the plant's steps, world frame, m/s, [T, 3].
 
@@ -68,7 +49,8 @@ class Winds(Frozen):
         unknown level.
         """
         stream = generator(f"wind/{level}", str(index), 0)
-        return self.sample(stream, self.levels[level], duration_s)
+        levels = {f"L{i}": mean for i, mean in enumerate(self.means_mps)}
+        return self.sample(stream, levels[level], ELEVATION_DEG, duration_s)
 
     def pool_series(self, collection_seed: int, episode: int, duration_s: float) -> Array:
         """Return a training episode's wind, [T, 3] m/s, keyed by collection seed and episode.
@@ -77,23 +59,24 @@ class Winds(Frozen):
         sphere: the reconstruction must be able to answer with vertical winds of about 6 m/s.
         """
         stream = generator("wind/collection", str(episode), collection_seed)
-        level = WindLevel(stream.uniform(*self.pool_mean_mps), 90.0)
-        return self.sample(stream, level, duration_s)
+        return self.sample(stream, stream.uniform(*self.pool_mean_mps), 90.0, duration_s)
 
-    def sample(self, stream: np.random.Generator, level: WindLevel, duration_s: float) -> Array:
-        """Return one wind of `level` from `stream`, world frame, m/s, [T, 3]."""
+    def sample(
+        self, stream: np.random.Generator, mean_mps: float, elevation_deg: float, duration_s: float
+    ) -> Array:
+        """Return a wind of this sustained speed and most elevation, world frame, m/s, [T, 3]."""
         steps = round(duration_s * PLANT_RATE_HZ)
-        axes = _flow_axes(stream, level.elevation_deg)
+        axes = _flow_axes(stream, elevation_deg)
         gust = one_minus_cosine(
             np.arange(steps) / PLANT_RATE_HZ,
             onset_s=stream.uniform(*self.gust_onset_s),
             duration_s=stream.uniform(*GUST_DURATION_S),
-            peak=stream.uniform(*self.gust) * level.mean_mps,
+            peak=stream.uniform(*self.gust) * mean_mps,
         )
-        airspeed = level.reference_airspeed_mps
+        airspeed = math.hypot(mean_mps, CRUISE_MPS)  # level wind and cruise at right angles
         turbulence = dryden(stream, steps, PLANT_RATE_HZ, airspeed, self.length_m)
-        along = self.turbulence * level.mean_mps * turbulence
-        along[:, 0] += level.mean_mps + gust
+        along = self.turbulence * mean_mps * turbulence
+        along[:, 0] += mean_mps + gust
         # Added up here, as a library's product depends on the processor.
         return along[:, [0]] * axes[0] + along[:, [1]] * axes[1] + along[:, [2]] * axes[2]
 

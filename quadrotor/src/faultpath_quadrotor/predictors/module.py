@@ -1,7 +1,5 @@
 """The predictor as modules of the loop: its queries, and its memory of the executed flight."""
 
-from dataclasses import dataclass
-
 import torch
 from torch import Tensor
 from typing_extensions import override
@@ -9,11 +7,7 @@ from typing_extensions import override
 from faultpath.loop import Batch, Memory, Outputs, Query
 from faultpath_quadrotor.batching import Delivered, LaneModule
 from faultpath_quadrotor.predictors import Predictor
-from faultpath_quadrotor.predictors.base import (
-    history,
-    ports,
-    predictor_inputs,
-)
+from faultpath_quadrotor.predictors.base import history, ports, predictor_inputs
 from faultpath_quadrotor.predictors.rollout import Candidates, Predicted, Roll, rolling
 
 
@@ -53,18 +47,11 @@ STEPS = 12  # paper, Section IV-A
 MOTION = ("velocity", "attitude", "body_rate")
 
 
-@dataclass(frozen=True)
-class _Past:
-    """The last intervals of every lane, as delivered when they were new."""
-
-    intervals: tuple[tuple[dict[str, Tensor], Tensor], ...]
-    """Motion at the start of each, and the command executed over it."""
-    latest: dict[str, Tensor]
-
-
 class HistoryEncoder(LaneModule):
     """Encodes the last 12 intervals of every lane, once a step.
 
+    It remembers them as delivered when they were new, the motion at the start of each and the
+    command executed over it, and the latest motion.
     Before the flight the vehicle hovered where it is first seen, under the command that was
     executed then. The supplied mass normalises the whole record anew at each step.
     """
@@ -79,15 +66,14 @@ class HistoryEncoder(LaneModule):
         self.reads = reads - self.reads_past
 
     @override
-    def compute(
-        self, readings: Delivered, step: int, memory: _Past | None
-    ) -> tuple[Outputs, _Past]:
+    def compute(self, readings: Delivered, step: int, memory: Memory) -> tuple[Outputs, Memory]:
         motion = {name: readings[name, "history"].float() for name in MOTION}
         command = readings["action", "history"].float()
         if memory is None:
             intervals = ((motion, command),) * STEPS
         else:
-            intervals = (*memory.intervals[1:], (memory.latest, command))
+            past, latest = memory
+            intervals = (*past[1:], (latest, command))
         motions, commands = zip(*intervals, strict=True)
 
         def recalled(channel: str, place: str) -> Tensor:
@@ -98,4 +84,4 @@ class HistoryEncoder(LaneModule):
             return torch.stack([motion[channel] for motion in motions], motion[channel].ndim - 1)
 
         code = self._predictor.encode(history(self._predictor.reads, recalled))
-        return {"history_encoding": code}, _Past(intervals, motion)
+        return {"history_encoding": code}, (intervals, motion)

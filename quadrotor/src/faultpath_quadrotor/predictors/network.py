@@ -156,14 +156,16 @@ class LatentNetwork(nn.Module):
         nn.init.zeros_(self.last.weight)
         nn.init.zeros_(self.last.bias)
 
-    def standardise(self, features: Tensor) -> Tensor:
-        """Return `features` `[*, 19 + conditioning, N]` in units of the training pool's spread."""
-        return (features - self.feature_mean) / self.feature_std
-
     def encode(self, history: Delivered) -> Tensor:
         """Return the history code `[32, *batch]`."""
-        latent = self.encoder.last(self.standardise(history_features(history)))
-        return latent.unflatten(1, history["mass", "history"].shape)
+        past = ("velocity", "attitude", "body_rate", "action", "mass")
+        velocity, rotation, rate, command, mass = (history[name, "history"] for name in past)
+        conditioning = None
+        if self.conditioned:
+            conditioning = history["mass", "features"], history["thrust_scale", "features"]
+        rows = features(velocity, rotation, rate, command, mass, conditioning)
+        sequence = (rows.movedim(1, 0).flatten(2) - self.feature_mean) / self.feature_std
+        return self.encoder.last(sequence).unflatten(1, mass.shape)
 
     def fold(self) -> "FoldedNetwork":
         """Return the network as the horizon loop runs it, with the weights of this moment."""
@@ -275,17 +277,3 @@ def features(
     if conditioning is not None:
         rows += [value.expand(1, *batch) for value in conditioning]
     return torch.cat(rows)
-
-
-def history_features(history: Delivered) -> Tensor:
-    """Return raw features of a history, `[T, 19 or 21, N]`, its batch flattened."""
-    mass, scale = ("mass", "features"), ("thrust_scale", "features")
-    stacked = features(
-        history["velocity", "history"],
-        history["attitude", "history"],
-        history["body_rate", "history"],
-        history["action", "history"],
-        history["mass", "history"],
-        (history[mass], history[scale]) if mass in history else None,
-    )
-    return stacked.movedim(1, 0).flatten(2)

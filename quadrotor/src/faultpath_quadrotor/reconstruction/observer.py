@@ -43,8 +43,7 @@ class DisturbanceObserver(Reconstruction):
         }
     )
 
-    def __init__(self, drag_kgps: Sequence[float], low_pass: float = LOW_PASS) -> None:
-        self._alpha = low_pass
+    def __init__(self, drag_kgps: Sequence[float]) -> None:
         self._air = LinearDrag(drag_kgps)
 
     def begin(self, delivered: Delivered) -> Memory:
@@ -59,7 +58,7 @@ class DisturbanceObserver(Reconstruction):
         raw = self._air.inverse(
             delivered["attitude", "nominal_model"], residual * delivered["mass", "wind_map"]
         )
-        return ObserverMemory(torch.lerp(memory.wind_mps, raw, self._alpha), velocity)
+        return ObserverMemory(torch.lerp(memory.wind_mps, raw, LOW_PASS), velocity)
 
     def observed(self, memory: ObserverMemory, delivered: Delivered) -> Tensor:
         """Return the acceleration of the last interval, `[3, *batch]`, m/s^2."""

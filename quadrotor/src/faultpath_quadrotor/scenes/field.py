@@ -11,7 +11,7 @@ distances beyond each wall, which trilinear cells reproduce, to rounding, howeve
 """
 
 import ctypes
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import groupby
@@ -131,12 +131,11 @@ class DistanceField:
     @classmethod
     def bake(
         cls,
-        scenes: Scene | Sequence[Scene],
+        scenes: Sequence[Scene],
         free_space: bool = False,
         device: torch.device | str | None = None,
     ) -> "DistanceField":
         """Bake scenes, or their boundaries alone, into one table: about 0.8 MB each."""
-        scenes = [scenes] if isinstance(scenes, Scene) else list(scenes)
         lattices = list(map(Lattice.over, scenes))
         shapes = torch.tensor([lattice.shape for lattice in lattices])  # [B, 3]
         nx, ny, nz = (int(n) for n in shapes.amax(0))
@@ -154,10 +153,8 @@ class DistanceField:
             per_metre=1.0 / CELL_M,
         )
 
-    def select(self, rows: Tensor | Iterable[int]) -> "DistanceField":
+    def select(self, rows: Tensor) -> "DistanceField":
         """Return the field of some scenes, in the order of their rows; the table is shared."""
-        if not isinstance(rows, Tensor):
-            rows = torch.tensor(list(rows), device=self.table.device)
         return replace(
             self, origin=self.origin[:, rows], last=self.last[:, rows], first=self.first[rows]
         )

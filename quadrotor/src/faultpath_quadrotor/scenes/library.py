@@ -139,15 +139,6 @@ class SceneLibrary:
         """Return the library of some scenes, with its hash."""
         return cls(name, scenes, digest([name, *(scene.content_hash for scene in scenes)]))
 
-    def __len__(self) -> int:
-        return len(self.scenes)
-
-    def __iter__(self) -> Iterator[Scene]:
-        return iter(self.scenes)
-
-    def __getitem__(self, index: int) -> Scene:
-        return self.scenes[index]
-
 
 def load_library(name: str | Path) -> SceneLibrary:
     """Return a frozen library by its name, or a library from a file that can be flown.

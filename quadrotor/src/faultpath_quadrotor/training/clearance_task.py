@@ -113,7 +113,7 @@ def collect(
     settings = settings or ClearanceRecipe()
     parts = [
         PoolPart(f"{scene.index:03d}", 1, partial(draw, settings, scene))
-        for scene in load_library(settings.library)
+        for scene in load_library(settings.library).scenes
     ]
     return make_pool(folder, recipe(settings), parts, workers, progress)
 
@@ -124,7 +124,7 @@ def recipe(settings: ClearanceRecipe | None = None) -> PoolRecipe:
     library = load_library(settings.library)
     return PoolRecipe(
         pool=CLEARANCE_POOL,
-        episodes=len(library),
+        episodes=len(library.scenes),
         seed=settings.seed,
         code_sha256=code_of(),
         settings={**settings.model_dump(mode="json"), "library_sha": library.content_hash},

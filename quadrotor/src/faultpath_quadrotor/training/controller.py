@@ -7,8 +7,7 @@ and wind, and passes through no tap.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -126,12 +125,6 @@ class Course(Batched):
             "holds": perturbation.holds,
         }
         return cls(**{name: torch.as_tensor(value) for name, value in values.items()})
-
-    @classmethod
-    def stack(cls, courses: Sequence[Course]) -> Course:
-        """Return single courses as one batch, in their order."""
-        names = [field.name for field in fields(cls)]
-        return cls(**{n: torch.stack([getattr(c, n) for c in courses], dim=-1) for n in names})
 
 
 class WaypointController:

@@ -46,24 +46,20 @@ class _Start:
 
 @torch.inference_mode()
 @native.using(native.PORTABLE)
-def fly(
-    pool: str, episodes: Sequence[int], seed: int, settings: FlightSettings | None = None
-) -> Flights:
+def fly(pool: str, episodes: Sequence[int], seed: int) -> Flights:
     """Fly some episodes of a pool together; the bits of each do not depend on the others.
 
     The draws of an episode are keyed by pool, episode and seed, and lanes are padded to whole
     vectors. All fly in free air for the same time, diverged or not; nothing passes a tap.
     """
-    if settings is None:
-        settings = PLATFORM.collection
+    settings = PLATFORM.collection
     starts = [_draw(pool, episode, seed, settings) for episode in episodes]
     lanes = padded_lanes(len(starts))
     vehicle = Vehicle.stack([start.vehicle for start in starts]).take(lanes)
-    course = Course.stack([start.course for start in starts]).take(lanes)
+    course = Course.together([start.course for start in starts]).take(lanes)
     plant, winds = TorchPlant(vehicle), _winds(starts)
     controller = WaypointController(vehicle, course, settings.controller.arrival_m)
-    parts = zip(*(vars(start.state).values() for start in starts), strict=True)
-    plant_state = plant.start(State(*(torch.stack(part, -1) for part in parts)).take(lanes))
+    plant_state = plant.start(State.together([start.state for start in starts]).take(lanes))
     running = torch.ones(len(lanes), dtype=torch.bool)
     steps = torch.zeros(len(lanes), dtype=torch.long)
     values = blank_values(EPISODE_STEPS, len(starts))

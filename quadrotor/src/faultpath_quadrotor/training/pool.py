@@ -140,7 +140,7 @@ def make_pool(
             sweep(place)
             files = [pool_path(place, part.name) for part in parts]
             missing = [
-                DataFile(file, partial(_store, file, part.make), part.size)
+                DataFile(file, partial(store, file, part.make), part.size)
                 for file, part in zip(files, parts, strict=True)
             ]
             make_missing([missing], workers, progress)
@@ -208,9 +208,9 @@ def pools_sha256(data: Path, pools: Iterable[str]) -> dict[str, str]:
     return {name: pool.content_sha256 for name, pool in known.items() if pool is not None}
 
 
-def store(path: Path, data: PartData) -> None:
-    """Write a part; `OSError` when the disk will not."""
-    write(path, encoded(data.tensors()))
+def store(path: Path, make: Callable[[], PartData]) -> None:
+    """Make and write a part; `OSError` when the disk will not."""
+    write(path, encoded(make().tensors()))
 
 
 def joined(files: Iterable[Path]) -> dict[str, Tensor]:
@@ -234,10 +234,6 @@ def code_of(*packages: str) -> str:
         if path.suffix == ".py"
     }
     return hashlib.sha256(repr(sorted(digests.items())).encode()).hexdigest()[:32]
-
-
-def _store(path: Path, make: Callable[[], PartData]) -> None:
-    store(path, make())
 
 
 def _digest(tensors: Mapping[str, Tensor]) -> str:

@@ -17,16 +17,16 @@ from faultpath_quadrotor.training.pool import read_pool
 from faultpath_quadrotor.vehicle import VehicleParameters
 
 SIGNALS = {
-    "position": ("x_m", "y_m", "z_m"),
-    "velocity": ("vx_mps", "vy_mps", "vz_mps"),
-    "rotation": tuple(f"r{i}{j}" for i in range(3) for j in range(3)),
-    "rate": ("roll_rate_radps", "pitch_rate_radps", "yaw_rate_radps"),
-    "command": ("thrust_n", "roll_command_radps", "pitch_command_radps", "yaw_command_radps"),
-    "wind_mps": ("wind_x_mps", "wind_y_mps", "wind_z_mps"),
-    "motor_thrust_n": ("motor_thrust_n",),
+    "position": slice(0, 3),
+    "velocity": slice(3, 6),
+    "rotation": slice(6, 15),
+    "rate": slice(15, 18),
+    "command": slice(18, 22),
+    "wind_mps": slice(22, 25),
+    "motor_thrust_n": slice(25, 26),
 }
-"""Signals recorded at each control instant, and the names of their components."""
-COMPONENTS = tuple(name for names in SIGNALS.values() for name in names)
+"""Components of the signals recorded at each control instant."""
+COMPONENTS = 26
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Flights:
     """Records of a batch of episodes."""
 
     values: np.ndarray
-    """float32 [C, N + 1, B] at the control instants, in the order of `COMPONENTS`; a command
+    """float32 [C, N + 1, B] at the control instants, in the order of `SIGNALS`; a command
     stands at the instant from which it acts, and is not a number at the last one."""
     steps: np.ndarray
     """Control steps of each episode before it ended, [B]. Its states are 0..steps; what comes
@@ -45,8 +45,7 @@ class Flights:
         """Return what a pool keeps: the instants of all episodes, [R, C], lengths and vehicles."""
         kept = np.arange(self.values.shape[1]) <= self.steps[:, None]
         rows = self.values.transpose(2, 1, 0)[kept]
-        acting = [COMPONENTS.index(component) for component in SIGNALS["command"]]
-        rows[np.cumsum(self.steps + 1)[:, None] - 1, acting] = np.nan  # none acts after the end
+        rows[np.cumsum(self.steps + 1) - 1, SIGNALS["command"]] = np.nan  # none acts after the end
         columns = {"values": rows, "steps": self.steps.astype(np.int64)}
         for name in VehicleParameters.model_fields:
             columns[name] = np.array([getattr(vehicle, name) for vehicle in self.vehicles])
@@ -59,7 +58,7 @@ class FlightData:
 
     name: str
     values: np.ndarray
-    """float32 [C, R] in the order of `COMPONENTS`; episodes one after the other."""
+    """float32 [C, R] in the order of `SIGNALS`; episodes one after the other."""
     steps: np.ndarray
     """Control steps of each episode, [E]; it has one row more than steps."""
     vehicles: dict[str, np.ndarray]
@@ -89,7 +88,7 @@ class FlightData:
 
 def blank_values(steps: int, count: int) -> NDArray[np.float32]:
     """Return `Flights.values` of flights of at most so many steps, all not a number yet."""
-    return np.full((len(COMPONENTS), steps + 1, count), np.nan, np.float32)
+    return np.full((COMPONENTS, steps + 1, count), np.nan, np.float32)
 
 
 def record(

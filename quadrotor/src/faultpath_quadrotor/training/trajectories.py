@@ -23,13 +23,7 @@ from faultpath_quadrotor.plant.module import ACTION, CONTROL_STEPS, Flying
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.system import Quadrotor
 from faultpath_quadrotor.training import TRAJECTORY_POOL, recorded
-from faultpath_quadrotor.training.pool import (
-    PoolPart,
-    PoolRecipe,
-    Progress,
-    code_of,
-    make_pool,
-)
+from faultpath_quadrotor.training.pool import PoolPart, PoolRecipe, Progress, code_of, make_pool
 from faultpath_quadrotor.training.recorded import Flights, blank_values
 from faultpath_quadrotor.vehicle import CONTROL_RATE_HZ
 

@@ -16,7 +16,7 @@ from faultpath_quadrotor.predictors.base import Take, history, predictor_inputs
 from faultpath_quadrotor.predictors.module import STEPS
 from faultpath_quadrotor.predictors.rollout import unroll
 from faultpath_quadrotor.state import State
-from faultpath_quadrotor.training.recorded import COMPONENTS, SIGNALS, FlightData
+from faultpath_quadrotor.training.recorded import SIGNALS, FlightData
 
 HISTORY = STEPS
 HORIZON = 20  # paper, Section IV-A
@@ -61,8 +61,6 @@ class Windows:
     """[3, W]"""
     motor_thrust_n: Tensor
     """Sum of the motors before the thrust scale, [33, W]."""
-    episode: Tensor
-    """Index of the episode in its pool, long [W]."""
     ids: tuple[str, ...]
     """Pool, episode, and window in the episode: "nominal/00012/2"."""
 
@@ -166,13 +164,10 @@ def cut(pool: FlightData, stride: int = STRIDE, length: int = COMMANDS) -> Windo
     rows = np.arange(length + 1)[:, None] + pool.first_row[episode] + first
 
     def signal(name: str) -> Tensor:
-        channels = [COMPONENTS.index(component) for component in SIGNALS[name]]
         at = rows[:-1] if name == "command" else rows
-        return torch.from_numpy(np.stack([pool.values[channel][at] for channel in channels]))
+        return torch.from_numpy(np.stack([values[at] for values in pool.values[SIGNALS[name]]]))
 
     def tensor(name: str) -> Tensor:
-        if name == "episode":
-            return torch.from_numpy(episode)
         if name in pool.vehicles:
             return torch.from_numpy(np.take(pool.vehicles[name], episode, axis=-1)).float()
         values = signal(name)
