@@ -35,7 +35,7 @@ def test_the_surface_is_what_was_measured_at_a_point_and_a_mean_elsewhere() -> N
 @pytest.mark.parametrize("turned", [lambda x, y: (y, x), lambda x, y: (-x, y)])
 def test_exchanging_the_modules_or_the_sign_of_an_error_turns_the_surface(turned) -> None:
     weights = surface_weights(FINER)
-    other = surface_weights([turned(*point) for point in FINER])
+    other = surface_weights(tuple(turned(*point) for point in FINER))
     order = [PLACES.index(turned(*place)) for place in PLACES]
     np.testing.assert_allclose(other[order], weights)
 

@@ -182,8 +182,8 @@ def test_the_trials_announced_count_those_of_halved_sizes():
     cost = SAID["costly sizes"][0]
     record, *_ = scanned(Planted(cost, ("pair",)), scenes=70)
     announced = planned(Planted(cost, ("pair",)), scenes=70)
-    assert announced.trials(20) < record.trials <= announced.at_most()
-    assert f"at most about {announced.at_most()} trials in all" in announced.notice()
+    assert announced.trials(20) < record.trials <= announced.expected(HALVINGS)
+    assert f"at most about {announced.expected(HALVINGS)} trials in all" in announced.notice()
 
 
 def test_a_repair_is_scanned_with_the_same_errors_and_tested_apart():

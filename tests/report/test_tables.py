@@ -13,9 +13,9 @@ TABLE = Table(
     words=("What it is",),
     lines=(
         line("With wind"),
-        line("wm-a", Entry(text="70.3", published="69"), "a model", name=True, aside="zero wind"),
+        line("wm-a", Entry(text="70.3", published="69"), "a model", aside="zero wind"),
         line("dob", Entry(text="+5.0", detected=True, aside="floor"), "an observer"),
-        line("gru", Entry(text="3", tone="bad"), Entry(text="ab12", name=True)),
+        line("gru", Entry(text="3", tone="bad"), "ab12"),
     ),
 )
 STRANGE = r"100% of a_b & c#d {$x^2$} ~ \end{tabular} <b> [1] | *"

@@ -128,16 +128,3 @@ def test_more_of_the_same_side_has_a_smaller_p_and_very_many_pairs_do_not_underf
     more = [unconditional.p_value(b, 2, 100) for b in range(2, 60)]
     assert all(one > two for one, two in pairwise(more))
     assert unconditional.p_value(1400, 0, 1500) == pytest.approx(0.0, abs=1e-300)
-
-
-def test_the_rule_chooses_the_test_of_one_seed():
-    first = np.zeros((100, 1))
-    first[:5] = 1
-    exact, em = (
-        with_test(success_effect(first, 0 * first, test=test)).test
-        for test in ("conditional", "unconditional")
-    )
-    assert (exact.p_value, exact.leans) == (0.0625, 1)
-    assert (round(em.p_value, 3), em.leans) == (0.023, 1)
-    assert exact.name == "exact McNemar"
-    assert "E+M" in em.name

@@ -10,8 +10,8 @@ from cli_runs import ROOT, TOY, faultpath
 from faultpath.core.errors import UserError
 from faultpath.faults import FaultText
 from faultpath.interface import Provenance
+from faultpath.report.checks import trace_table
 from faultpath.report.sentences.checks import describe_read
-from faultpath.report.terminal import trace_table
 from faultpath.run.check.tracing import PermittedRead, trace_system
 from faultpath.run.plan import SystemSpec
 from faultpath.run.question import TraceQuestion

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import PurePath
 
 from faultpath.analyses.analysis import (
@@ -44,7 +45,8 @@ class AuditAnalysis(Analysis[None]):
 
     def rounds(self) -> Rounds[None]:
         """Yield the only round."""
-        yield Round(self.plan, stop=self.stops)
+        stop = partial(stops, self.question, self.facts, self.conditions)
+        yield Round(self.plan, stop=stop)
 
     def conclude(self, trials: Trials, deliveries: Deliveries, items: None = None) -> AuditResult:
         """Return the result of an audit; raises as `faultpath.analyses.decide.decide`."""
@@ -63,10 +65,6 @@ class AuditAnalysis(Analysis[None]):
             for condition in self.conditions
         ]
         return decide(self.question, self.facts, conditions, trials, deliveries.findings)
-
-    def stops(self, trials: Trials) -> bool:
-        """Return whether a sequential audit ends with these trials."""
-        return stops(self.question, self.facts, self.conditions, trials)
 
 
 def faulted_taps(counts: Sequence[TapCount]) -> tuple[FaultedTap, ...]:

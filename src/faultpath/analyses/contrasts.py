@@ -79,7 +79,7 @@ def paired_scenes(repair: Floats, baseline: Floats) -> Bools:
 
 @dataclass(frozen=True)
 class Design:
-    """How success under the conditions of an audit becomes contrasts, each with its test."""
+    """How success under the conditions of an audit becomes contrasts."""
 
     models: bool
     """Whether it speaks of newly trained models as well."""
@@ -87,11 +87,10 @@ class Design:
     """Whether the number of scenes was not fixed beforehand."""
 
     def effect(self, repair: Floats, baseline: Floats) -> Contrast:
-        """Return the effect over the scenes with at least one complete pair, with its test."""
-        return with_test(self.untested(repair, baseline))
+        """Return the effect over the scenes with at least one complete pair.
 
-    def untested(self, repair: Floats, baseline: Floats) -> Contrast:
-        """Return the same without its test, which takes long where scenes are many."""
+        It has no test yet, which takes long where scenes are many.
+        """
         return success_effect(repair, baseline, models=self.models, sequential=self.sequential)
 
     def together(self, one: Outcomes, two: Outcomes) -> tuple[Contrast, Contrast] | None:
@@ -104,7 +103,7 @@ class Design:
             ends = [(a[:, ran[0] & ran[1]], b[:, ran[0] & ran[1]]) for a, b in ends]
         if not kept.any() or ends[0][0].shape[1] < 1 + self.models:
             return None
-        return self.untested(*ends[0]), self.untested(*ends[1])
+        return self.effect(*ends[0]), self.effect(*ends[1])
 
     def contrasts(
         self,
@@ -113,9 +112,10 @@ class Design:
         alone: Mapping[str, Outcomes] | None = None,
     ) -> dict[str, Contrast]:
         """Return the effects under the `tested` conditions, and their changes from the isolated to
-        the shared one, by name. Changes begin at the outcomes `alone` where these are given."""
+        the shared one, by name and with their tests. Changes begin at the outcomes `alone` where
+        these are given."""
         alone = success if alone is None else alone
-        contrasts = {effect_name(name): self.effect(*success[name]) for name in tested}
+        contrasts = {effect_name(name): with_test(self.effect(*success[name])) for name in tested}
         for name in isolated(tested):
             if ends := self.together(alone[name], success[SHARED]):
                 contrasts[change_name(name)] = with_test(change(*ends))

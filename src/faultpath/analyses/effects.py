@@ -9,8 +9,6 @@ from faultpath.stats.decisions import Turn
 from faultpath.stats.distributions import sign_p_value
 from faultpath.stats.estimate import EM, Estimate, Sign
 
-FEW_DIFFER = 10
-"""With fewer scenes that differ, a headline says how many there are."""
 FLOOR_PERCENT, CEILING_PERCENT = 10.0, 90.0
 Extreme = Literal["floor", "ceiling"]
 """Both versions below the one, or both above the other."""
@@ -107,11 +105,6 @@ class Effect(Difference):
     def mcnemar_p(self) -> float | None:
         """P-value of exact McNemar, to stand beside that of another test of one seed."""
         return sign_p_value(*self.won[0]) if self.test.startswith(EM) else None
-
-    @property
-    def few_differ(self) -> bool:
-        """Whether so few scenes differ that a headline says how many."""
-        return sum(self.ahead) < FEW_DIFFER
 
     @property
     def leads(self) -> bool:

@@ -25,7 +25,7 @@ from faultpath.run.question import FEWEST_TRAININGS
 from faultpath.run.trials import Trials
 from faultpath.stats import betting
 from faultpath.stats.contrast import Contrast, ordered_sum
-from faultpath.stats.decisions import Turn, decide_family, holm, turn
+from faultpath.stats.decisions import Turn, decide_family, holm, turn, with_test
 from faultpath.stats.estimate import ALPHA, Sign
 from faultpath.stats.power import fewest_scenes
 
@@ -136,7 +136,7 @@ def decide_conditions(
 
     # By condition again; without correction where the fault never acted.
     effects = {
-        condition: corrected.get(effect_name(condition)) or design.effect(*pair)
+        condition: corrected.get(effect_name(condition)) or with_test(design.effect(*pair))
         for condition, pair in success.items()
     }
     changes = {

@@ -9,6 +9,7 @@ import numpy as np
 from faultpath.analyses.contrasts import Design, Outcomes, effect_name, paired_scenes
 from faultpath.run.pairing import Bools
 from faultpath.stats.contrast import Contrast
+from faultpath.stats.decisions import with_test
 from faultpath.stats.distributions import sign_p_value, t_p_value
 from faultpath.stats.estimate import ALPHA, SCENES_AND_SEEDS, PairedTest
 
@@ -68,7 +69,7 @@ def missing_outcomes(
     ]
     return MissingOutcomes(
         bounds={
-            condition: (design.untested(*low[condition]), design.untested(*high[condition]))
+            condition: (design.effect(*low[condition]), design.effect(*high[condition]))
             for condition in success
         },
         inconclusive=tuple(inconclusive),
@@ -152,7 +153,7 @@ def reruns_needed(
         still = [np.where(part & ~rerun(count), np.nan, 0.0) for part in missing]
         if not paired_scenes(*low).any() or failed_unevenly((still[0], still[1])):
             return False
-        ends = ({name: design.effect(*left)} for left in (low, high))
+        ends = ({name: with_test(design.effect(*left))} for left in (low, high))
         return correct({**corrected, **nearest_to_nothing(*ends)})[name].sign == sign
 
     # Bisection, since each further pair that ran leaves less to be set against the effect.

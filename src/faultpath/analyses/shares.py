@@ -56,46 +56,38 @@ def _between(
     # Both ends with what failed trials leave open against the repair, and for it.
     fills = tuple(zip(*filled, strict=True)) if any(a.value != b.value for a, b in filled) else ()
     result = break_even(*contrasts, level=level, fills=fills)
+    ahead = [(region, _ahead(region, none, every)) for region in result.regions]
+    # A table and a picture leave out what reaches an end whose own effect does not lead.
+    shown = [region for region, part in ahead if part and part.where not in ("many", "few")]
     return ConditionBreakEven(
         condition=none.condition if over == "beta" else every.condition,
         over=over,
-        result=only(result, [region for region in result.regions if _shown(region, none, every)]),
+        result=only(result, shown),
         curve=mixture_curve(*contrasts, level=level, fills=fills),
-        ahead=_ahead(result.regions, none, every),
+        ahead=tuple(part for _, part in ahead if part),
     )
 
 
-def _shown(region: Region, none: Effect, every: Effect) -> bool:
-    """Return whether a table and a picture show a region: the effect at the end that it reaches
-    bears it out."""
-    low = region.low > 0.0 or (none.leads and region.sign == none.sign)
-    high = region.high < 1.0 or (every.leads and region.sign == every.sign)
-    inner = region.low > 0.0 and region.high < 1.0
-    return low and high and not inner and last(region.high) > 0 and first(region.low) < 100
-
-
-def _ahead(regions: tuple[Region, ...], none: Effect, every: Effect) -> tuple[Ahead, ...]:
-    """Return who is significantly ahead at which shares.
+def _ahead(region: Region, none: Effect, every: Effect) -> Ahead | None:
+    """Return who is significantly ahead at which shares, by one region; `None` where none counts.
 
     A region counts where it reaches an end (a share of none, or of all) with a significant effect
     on the same side, away from floor and ceiling: so no sentence contradicts that effect.
     """
-    results: list[Ahead] = []
-    for region in regions:
-        sign = region.sign
-        low = region.low <= 0.0 and none.leads and sign == none.sign
-        high = region.high >= 1.0 and every.leads and sign == every.sign
-        if low and high:
-            return (Ahead(sign=sign, where="everywhere"),)
-        if high and region.low <= 0.0:
-            results.append(Ahead(sign=sign, where="many"))
-        elif low and region.high >= 1.0:
-            results.append(Ahead(sign=sign, where="few"))
-        elif high and first(region.low) < 100:
-            results.append(Ahead(sign=sign, where="from", percent=first(region.low)))
-        elif low and last(region.high) > 0:
-            results.append(Ahead(sign=sign, where="up to", percent=last(region.high)))
-    return tuple(results)
+    sign = region.sign
+    low = region.low <= 0.0 and none.leads and sign == none.sign
+    high = region.high >= 1.0 and every.leads and sign == every.sign
+    if low and high:
+        return Ahead(sign=sign, where="everywhere")
+    if high and region.low <= 0.0:
+        return Ahead(sign=sign, where="many")
+    if low and region.high >= 1.0:
+        return Ahead(sign=sign, where="few")
+    if high and first(region.low) < 100:
+        return Ahead(sign=sign, where="from", percent=first(region.low))
+    if low and last(region.high) > 0:
+        return Ahead(sign=sign, where="up to", percent=last(region.high))
+    return None
 
 
 def first(frequency: float) -> int:

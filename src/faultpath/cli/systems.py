@@ -39,8 +39,8 @@ def trace(system: SystemName, as_json: Json = False, **arguments: Any) -> int:
     Exits with 1 where that differs from what is declared."""
     from faultpath.api.display import SafeConsole
     from faultpath.api.job import begin
-    from faultpath.report.checks import trace_report_of
-    from faultpath.report.terminal import STYLES, Parted, interface_table, trace_table
+    from faultpath.report.checks import interface_table, trace_report_of, trace_table
+    from faultpath.report.terminal import STYLES, Parted
     from faultpath.run.check.tracing import trace_system
 
     question, chosen, _, _ = begin("api.trace", TraceQuestion, system, arguments, display())

@@ -1,4 +1,4 @@
-"""A check and a trace in words, as a console and JSON show them."""
+"""A check, a trace and an interface, as a console and JSON show them."""
 
 from typing import Any, Literal
 
@@ -8,11 +8,13 @@ from rich.text import Text
 
 from faultpath.core.results import Result
 from faultpath.core.text import counted
+from faultpath.interface import Gap, Interface, rank, transitive_readers
 from faultpath.report.sentences import checks as words
-from faultpath.report.terminal import STYLES
+from faultpath.report.tables import Line, Table, line
+from faultpath.report.terminal import STYLES, drawn
 from faultpath.run.check.check import SystemCheck
 from faultpath.run.check.results import Checked
-from faultpath.run.check.tracing import Trace, TraceFinding
+from faultpath.run.check.tracing import Trace, TracedRead, TraceFinding
 
 _STYLES = {"passed": STYLES["good"], "failed": STYLES["bad"], "not judged": STYLES["faint"]}
 
@@ -100,3 +102,62 @@ def check_lines(report: Report) -> RenderableType:
 
 def _line(status: str, text: str) -> Text:
     return Text.assemble(Text(status, _STYLES[status]), f"  {text}")
+
+
+def interface_table(interface: Interface) -> RenderableType:
+    """Return the channels of an interface, most readers first: who feeds each, who reads it and
+    who is reached through a reconstruction; and what is reconstructed."""
+    lines: list[Line] = []
+    for channel in rank(interface):
+        sources = (f"{name} {interface.source(name).provenance.value}" for name in channel.sources)
+        reached = set(transitive_readers(interface, channel.name)) - set(channel.readers)
+        readers = (*channel.readers, *(f"reaches {name}" for name in sorted(reached)))
+        gap = "" if channel.gap is Gap.NONE else f"{channel.gap.value} gap"
+        entries = ("\n".join(sources), "\n".join(readers))
+        lines.append(line(channel.name, *entries, aside=gap))
+    columns = ("fed by", "read by")
+    table = Table(
+        title=f"Information interface of {interface.name}",
+        corner="channel",
+        columns=columns,
+        words=columns,
+        lines=tuple(lines),
+    )
+    reconstructions = [
+        Text(f"{module} reconstructs {name}.") for module, name in interface.reconstructions
+    ]
+    return Group(drawn(table), *reconstructions)
+
+
+def trace_table(trace: Trace[Any]) -> Table:
+    """Return a line for each reader of a channel, in the order in which they read."""
+    taps: dict[tuple[str, str], list[TracedRead]] = {}
+    for read in trace.reads:
+        taps.setdefault((read.reader, read.channel), []).append(read)
+    columns = ["channel", "source", "at steps", "of steps", "made by"]
+    lines: list[Line] = []
+    for (reader, channel), reads in taps.items():
+        source = reads[0].source
+        steps = (" ".join(str(r.step) for r in reads), " ".join(str(r.valid_step) for r in reads))
+        entries = [channel, source, *steps, trace.reconstructed.get(source, ("",))[0]]
+        if trace.fault:
+            by = (name for read in reads for name in read.altered_by)
+            entries.insert(1, ", ".join(dict.fromkeys(by)))
+        lines.append(line(reader, *entries))
+    if trace.fault:
+        columns.insert(1, "altered by")
+    return Table(
+        title=f"{trace.variant} of {trace.system}, {trace.steps} steps in {trace.scene}",
+        corner="who",
+        columns=tuple(columns),
+        words=tuple(columns),
+        lines=tuple(lines),
+        notes=(
+            "At steps: those of the reading. Of steps: those at which the source got the value "
+            "that was read; -1 is before the first.",
+            *(
+                f"{source} is reconstructed by {module} from {', '.join(channels) or 'nothing'}."
+                for source, (module, channels) in trace.reconstructed.items()
+            ),
+        ),
+    )

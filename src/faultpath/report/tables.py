@@ -38,8 +38,6 @@ class Entry(_Sparse):
     aside: str = ""
     """Qualification, such as `ceiling`: stands behind it in parentheses."""
     tone: Tone = ""
-    name: bool = False
-    """Whether it is a name or a digest, set as code where there is such a type."""
 
 
 class Line(_Sparse):
@@ -49,8 +47,6 @@ class Line(_Sparse):
     entries: tuple[Entry, ...] = ()
     aside: str = ""
     """Qualification of the label."""
-    name: bool = False
-    """Whether the label is the name of something, set as code."""
 
 
 class Table(_Sparse):
@@ -92,10 +88,10 @@ class Table(_Sparse):
         yield heading, tuple(lines)
 
 
-def line(label: str, *entries: str | Entry, name: bool = False, aside: str = "") -> Line:
+def line(label: str, *entries: str | Entry, aside: str = "") -> Line:
     """Return a line whose plain texts are entries."""
     cells = tuple(Entry(text=entry) if isinstance(entry, str) else entry for entry in entries)
-    return Line(label=label, entries=cells, name=name, aside=aside)
+    return Line(label=label, entries=cells, aside=aside)
 
 
 def html(table: Table, style: str = "numbers", *, caption: bool = True) -> Markup:
@@ -163,19 +159,15 @@ def markdown_grid(table: Table) -> str:
         if not line.entries:
             rows.append([f"*{markdown_escape(line.label)}*", *[""] * len(table.columns)])
             continue
-        label = _code(line.label) if line.name else markdown_escape(line.label)
+        label = markdown_escape(line.label)
         label += f" ({markdown_escape(line.aside)})" if line.aside else ""
         rows.append([label, *map(_markdown_entry, line.entries)])
     return "\n".join(f"| {f'{row[0]} ' if row[0] else ''}| {' | '.join(row[1:])} |" for row in rows)
 
 
 def _markdown_entry(entry: Entry) -> str:
-    text = _code(entry.text) if entry.name else markdown_escape(entry.text)
+    text = markdown_escape(entry.text)
     if entry.detected or entry.tone == "bad":
         text = f"**{text}**"
     behind = (entry.aside, entry.published)
     return " ".join([text, *(f"({markdown_escape(part)})" for part in behind if part)])
-
-
-def _code(name: str) -> str:
-    return markdown_escape(name) if any(mark in name for mark in "`|\n\\") else f"`{name}`"

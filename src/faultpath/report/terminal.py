@@ -1,8 +1,7 @@
-"""Terminal output for a result, an interface and a trace."""
+"""A result as a terminal shows it, and any table."""
 
 from collections.abc import Iterable
 from textwrap import fill
-from typing import TYPE_CHECKING, Any
 
 from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
 from rich.padding import Padding
@@ -12,7 +11,6 @@ from rich.text import Text
 from faultpath.analyses.map.model import MapResult
 from faultpath.analyses.model import AuditResult
 from faultpath.analyses.scan.model import ScanResult
-from faultpath.interface import Gap, Interface, rank, transitive_readers
 from faultpath.report.audit_tables import DIFFERENCE, by_condition, by_quantity, chosen_metric
 from faultpath.report.sentences import wording, words
 from faultpath.report.sentences.answers import answers, would_change
@@ -22,10 +20,7 @@ from faultpath.report.sentences.phrases import (
     not_standing,
     stopping,
 )
-from faultpath.report.tables import Entry, Line, Table, Tone, line
-
-if TYPE_CHECKING:
-    from faultpath.run.check.tracing import Trace, TracedRead
+from faultpath.report.tables import Entry, Table, Tone
 
 STYLES: dict[Tone, str] = {"": "", "good": "green", "bad": "bold red", "faint": "dim"}
 """How tones look."""
@@ -94,65 +89,6 @@ def _list(title: str, items: tuple[str, ...], style: str) -> list[RenderableType
         return []
     points = (Padding(Text(f"- {item}"), (0, 0, 0, 2)) for item in items)
     return [Text(""), Text(title, style=style), *points]
-
-
-def interface_table(interface: Interface) -> RenderableType:
-    """Return the channels of an interface, most readers first: who feeds each, who reads it and
-    who is reached through a reconstruction; and what is reconstructed."""
-    lines: list[Line] = []
-    for channel in rank(interface):
-        sources = (f"{name} {interface.source(name).provenance.value}" for name in channel.sources)
-        reached = set(transitive_readers(interface, channel.name)) - set(channel.readers)
-        readers = (*channel.readers, *(f"reaches {name}" for name in sorted(reached)))
-        gap = "" if channel.gap is Gap.NONE else f"{channel.gap.value} gap"
-        entries = ("\n".join(sources), "\n".join(readers))
-        lines.append(line(channel.name, *entries, aside=gap))
-    columns = ("fed by", "read by")
-    table = Table(
-        title=f"Information interface of {interface.name}",
-        corner="channel",
-        columns=columns,
-        words=columns,
-        lines=tuple(lines),
-    )
-    reconstructions = [
-        Text(f"{module} reconstructs {name}.") for module, name in interface.reconstructions
-    ]
-    return Group(drawn(table), *reconstructions)
-
-
-def trace_table(trace: "Trace[Any]") -> Table:
-    """Return a line for each reader of a channel, in the order in which they read."""
-    taps: dict[tuple[str, str], list[TracedRead]] = {}
-    for read in trace.reads:
-        taps.setdefault((read.reader, read.channel), []).append(read)
-    columns = ["channel", "source", "at steps", "of steps", "made by"]
-    lines: list[Line] = []
-    for (reader, channel), reads in taps.items():
-        source = reads[0].source
-        steps = (" ".join(str(r.step) for r in reads), " ".join(str(r.valid_step) for r in reads))
-        entries = [channel, source, *steps, trace.reconstructed.get(source, ("",))[0]]
-        if trace.fault:
-            by = (name for read in reads for name in read.altered_by)
-            entries.insert(1, ", ".join(dict.fromkeys(by)))
-        lines.append(line(reader, *entries))
-    if trace.fault:
-        columns.insert(1, "altered by")
-    return Table(
-        title=f"{trace.variant} of {trace.system}, {trace.steps} steps in {trace.scene}",
-        corner="who",
-        columns=tuple(columns),
-        words=tuple(columns),
-        lines=tuple(lines),
-        notes=(
-            "At steps: those of the reading. Of steps: those at which the source got the value "
-            "that was read; -1 is before the first.",
-            *(
-                f"{source} is reconstructed by {module} from {', '.join(channels) or 'nothing'}."
-                for source, (module, channels) in trace.reconstructed.items()
-            ),
-        ),
-    )
 
 
 def drawn(

@@ -101,11 +101,10 @@ def cancelling(
     singles: Mapping[int, Floats],
     pairs: Mapping[Key, Floats],
     same_source: Set[Key],
-    alpha: float = ALPHA,
 ) -> Cancelling:
     """Return the effects of errors alone and in pairs, from their outcomes.
 
-    A pair cancels if each error alone hurts, at half of ``alpha``, and both together beat the worse
+    A pair cancels if each error alone hurts, at half of `ALPHA`, and both together beat the worse
     one, at the other half, regain half of its loss, and do no worse than the other one, so that
     correcting only one of them does not help. In a pair of ``same_source`` one error covers the
     other if that one hurts, both together beat it and regain half of its loss, and the first alone
@@ -115,12 +114,9 @@ def cancelling(
         none: Outcomes without an error, [scenes].
         singles: Outcomes with each error alone, [scenes].
         pairs: Outcomes with both errors of each pair, [scenes].
-        same_source: Pairs whose errors are of one source.
-        alpha: Level of all statements on pairs together.
+        same_source: Those of these pairs whose errors are of one source.
     """
-    if unknown := same_source - pairs.keys():
-        raise ValueError(f"pairs of one source have no outcomes: {sorted(unknown)}")
-    alone = _singles(none, singles, alpha / 2.0)
+    alone = _singles(none, singles)
     compared = _compared(none, singles, pairs) if pairs else {}
     hurt = [key for key in compared if all(alone[error].kind == "hurts" for error in key)]
     corrected = holm({key: compared[key].p_value for key in hurt})
@@ -135,9 +131,9 @@ def cancelling(
         (other,) = set(key) - {pair.worse}
         regains = pair.regained is not None and pair.regained >= REGAINED
         beats_both = pair.both >= max(pair.first, pair.second)
-        cancels = regains and beats_both and corrected.get(key, 1.0) <= alpha / 2.0
+        cancels = regains and beats_both and corrected.get(key, 1.0) <= ALPHA / 2.0
         gains = round(alone[other].alone - alone[other].none, _DIGITS) > 0.0
-        covered = regains and not cancels and covers.get(key, 1.0) <= alpha and not gains
+        covered = regains and not cancels and covers.get(key, 1.0) <= ALPHA and not gains
         results[key] = pair._replace(
             corrected_p=corrected.get(key),
             covers_p=covers.get(key),
@@ -175,7 +171,7 @@ def ahead(first: Floats, second: Floats) -> Floats:
     return p_values
 
 
-def _singles(none: Floats, singles: Mapping[int, Floats], alpha: float) -> dict[int, Single]:
+def _singles(none: Floats, singles: Mapping[int, Floats]) -> dict[int, Single]:
     outcomes = np.stack(list(singles.values()))
     hurts, helps = ahead(none, outcomes), ahead(outcomes, none)
     corrected, helping = (
@@ -188,7 +184,7 @@ def _singles(none: Floats, singles: Mapping[int, Floats], alpha: float) -> dict[
     )
     results: dict[int, Single] = {}
     for at, error in enumerate(singles):
-        hurt, helped = corrected[error] <= alpha, helping[error] <= alpha
+        hurt, helped = (p[error] <= ALPHA / 2.0 for p in (corrected, helping))
         results[error] = Single(
             kind="hurts" if hurt else "helps" if helped else None,
             none=100.0 * float(without[at]),

@@ -16,6 +16,7 @@ from faultpath.stats.estimate import (
     SCENES_AND_SEEDS,
     TRAININGS,
     PairedTest,
+    sign_of,
 )
 
 Name = TypeVar("Name", str, int, tuple[int, int])
@@ -53,8 +54,7 @@ def with_test(contrast: Contrast) -> Contrast:
         name = "exact McNemar" if one_seed else "sign test on scene means"
         name = "sign test on scene differences" if contrast.pairs is None else name
         p, ahead = sign_p_value(first, second), first - second
-    leans = 1 if ahead > 0 else -1 if ahead < 0 else 0
-    return replace(contrast, test=PairedTest(name, p, leans))
+    return replace(contrast, test=PairedTest(name, p, sign_of(ahead)))
 
 
 def decide_family(

@@ -25,6 +25,11 @@ SCENES = "new scenes like these, for these trained models and recorded execution
 SCENES_AND_SEEDS = "new scenes like these and models newly trained with other seeds"
 
 
+def sign_of(value: float) -> Sign:
+    """Return 1, -1 or 0."""
+    return 1 if value > 0 else -1 if value < 0 else 0
+
+
 class Estimate(Frozen, allow_inf_nan=False):
     """A value, its interval, and what that interval generalises to.
 

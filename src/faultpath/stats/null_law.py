@@ -28,11 +28,6 @@ class EStep(NamedTuple):
     chances: Floats
     """[discordants, expected]: their probabilities."""
 
-    def expected(self, total: Counts, fewer: Counts) -> Floats:
-        """Return [tables]: the E step's probability of tables whose counts differ."""
-        z = (total - 2 * fewer) / np.sqrt(np.maximum(total, 1))
-        return self.chance(z, self.others[total], self.chances[total])
-
     def chance(self, z: Floats, others: Counts, chances: Floats) -> Floats:
         """Return [tables]: the probability of a statistic of at least ``z``, given those of
         `near`."""
@@ -52,7 +47,9 @@ class EStep(NamedTuple):
         high[0] = 0
         while len(total := np.flatnonzero(high - low > 1)):
             middle = (low[total] + high[total]) // 2
-            within = self.expected(total, middle) <= chance * (1.0 + TIE)
+            z = (total - 2 * middle) / np.sqrt(np.maximum(total, 1))
+            chances = self.chance(z, self.others[total], self.chances[total])
+            within = chances <= chance * (1.0 + TIE)
             low[total] = np.where(within, middle, low[total])
             high[total] = np.where(within, high[total], middle)
         return low

@@ -50,17 +50,11 @@ def rule_power(
 ) -> float:
     """Return the exact power of one seed's test at ``alpha`` together with Tango's 95 % interval.
 
-    Each of ``n_scenes`` pairs is discordant with probability ``discordant_rate`` and the success
-    probabilities differ by ``difference`` (fractions, |difference| <= discordant_rate). The number
-    of discordant pairs is enumerated, and the binomial of their split is summed in closed form.
+    Each of ``n_scenes`` pairs is discordant with probability ``discordant_rate``, above 0, and the
+    success probabilities differ by ``difference`` (fractions, |difference| <= discordant_rate). The
+    number of discordant pairs is enumerated, and the binomial of their split is summed in closed
+    form.
     """
-    if n_scenes < 1 or not 0.0 <= abs(difference) <= discordant_rate <= 1.0:
-        raise ValueError(
-            f"need 0 <= |difference| <= discordant_rate <= 1 and scenes, got "
-            f"{difference}, {discordant_rate} and {n_scenes}"
-        )
-    if discordant_rate == 0.0:
-        return 0.0
     first, last = likely(n_scenes, discordant_rate, discordant_rate)
     discordants = np.arange(first, last + 1)
     critical = _critical(n_scenes, alpha, test)[discordants]

@@ -34,13 +34,13 @@ from faultpath.analyses.map.model import (
     MapResult,
     MapSurface,
 )
-from faultpath.analyses.map.surface import Combined, Differences, Signs, sign_of, simultaneous
+from faultpath.analyses.map.surface import Combined, Differences, Signs, simultaneous
 from faultpath.analyses.model import invalid_by
 from faultpath.run.findings import Finding
 from faultpath.run.question import MapQuestion
 from faultpath.stats.breakeven import pieces_of
 from faultpath.stats.distributions import normal_quantile
-from faultpath.stats.estimate import Sign
+from faultpath.stats.estimate import Sign, sign_of
 from faultpath.stats.inputs import Floats
 
 _NODES = 96

@@ -75,7 +75,8 @@ def first_turn(known: Sequence[int], means: Sequence[float]) -> tuple[int, int] 
     return None
 
 
-def surface_weights(points: Sequence[Point]) -> Floats:
+@lru_cache(maxsize=4)
+def surface_weights(points: tuple[Point, ...]) -> Floats:
     """Return `[lattice(SHOWN), points]`: how the surface follows from the points.
 
     At a point it is what was measured there. Elsewhere it is halved down from the coarse lattice:
@@ -83,11 +84,6 @@ def surface_weights(points: Sequence[Point]) -> Floats:
     middles of its edges. So it is continuous, its weights are not negative and add up to 1, and
     without finer points it is bilinear in each cell.
     """
-    return _surface_weights(tuple(points))
-
-
-@lru_cache(maxsize=4)
-def _surface_weights(points: tuple[Point, ...]) -> Floats:
     own = dict(zip(points, np.eye(len(points)), strict=True))
     rows = {place: own[place] for place in lattice(COARSE)}
 

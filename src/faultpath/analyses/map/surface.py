@@ -24,7 +24,6 @@ from faultpath.analyses.map.lattice import (
     sizes,
 )
 from faultpath.stats.distributions import binomial_cdf, normal_tails
-from faultpath.stats.estimate import Sign
 from faultpath.stats.inputs import Floats
 from faultpath.stats.power import MIN_SCENES
 from faultpath.stats.resamples import ROUNDING, Resamples
@@ -34,11 +33,6 @@ Signs = NDArray[np.int64]
 RESAMPLES = 2000
 _DIGITS = 9
 """Digits of a combined value, so that values which cancel leave exactly 0."""
-
-
-def sign_of(value: float) -> Sign:
-    """Return 1, -1 or 0."""
-    return 1 if value > 0 else -1 if value < 0 else 0
 
 
 @dataclass(frozen=True, eq=False)

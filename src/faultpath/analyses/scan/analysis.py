@@ -112,15 +112,10 @@ class ScanAnalysis(Analysis[Scanned]):
         """Trials of one condition in one scene."""
         return len(self.question.variants) * len(self.question.seeds)
 
-    def expected(self) -> int:
-        """Return about how many trials there will be."""
-        most = self.trials(len(self.others))
-        return most if self.question.scenes is not None else min(TRIALS, most)
-
-    def at_most(self) -> int:
-        """Return about how many trials there will be at most, with those of halved sizes."""
-        most = self.trials(len(self.others))
-        most += self.per_scene * HALVINGS * len(self.errors) * len(self.first)
+    def expected(self, halvings: int = 0) -> int:
+        """Return about how many trials there will be at most, if all sizes are halved so often."""
+        halved = self.per_scene * halvings * len(self.errors) * len(self.first)
+        most = self.trials(len(self.others)) + halved
         return most if self.question.scenes is not None else min(TRIALS, most)
 
     def trials(self, second: int) -> int:
@@ -187,7 +182,7 @@ class ScanAnalysis(Analysis[Scanned]):
         return (
             f"{len(self.errors)} errors alone in {len(self.first)} scenes first, {first} trials; "
             "then halves of sizes that cost too much, and pairs of those that cost success, in "
-            f"other scenes, at most about {self.at_most()} trials in all."
+            f"other scenes, at most about {self.expected(HALVINGS)} trials in all."
         )
 
     def plan(self, tried: Iterable[ScanError], scanned: Scanned | None = None) -> Plan:

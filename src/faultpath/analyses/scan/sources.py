@@ -1,6 +1,6 @@
 """Uncertain sources, who reads them in the variants scanned, and how large their errors are."""
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 from pydantic import Field
@@ -64,8 +64,11 @@ def candidates(
     for one that reaches no reader, and for two at one of them.
     """
     interface = system.interface
-    uncertain = (s for s in interface.sources if s.provenance in _UNCERTAIN or s.uncertainty)
-    members = groups_of(s for s in uncertain if channels_of(interface, variants, s.name))
+    members: dict[str, list[Source]] = {}  # by the group that errs together, or the source
+    for source in interface.sources:
+        uncertain = source.provenance in _UNCERTAIN or source.uncertainty
+        if uncertain and channels_of(interface, variants, source.name):
+            members.setdefault(source.correlation_group or source.name, []).append(source)
     listed: list[Candidate] = []
     for name, sources in members.items():
         every = [c for source in sources for c in channels_of(interface, variants, source.name)]
@@ -105,7 +108,7 @@ def _size_at_readers(
     channels = set(narrowed.channels)
     place = next((i for i, other in enumerate(listed) if channels <= set(other.channels)), None)
     if place is None:
-        whole = _given(system, variants, replace(fault, text=_whole(fault), readers=()))
+        whole = _given(system, variants, replace(fault, readers=()).at(fault.sizes[0]))
         unsized = f"has a size at {' and '.join(fault.readers)} alone"
         listed.append(whole.model_copy(update={"fault": "", "unsized": unsized}))
         place = len(listed) - 1
@@ -117,18 +120,6 @@ def _size_at_readers(
             )
     at = {**candidate.at, **dict.fromkeys(narrowed.modules, str(fault))}
     listed[place] = candidate.model_copy(update={"at": at})
-
-
-def _whole(fault: FaultText) -> str:
-    return replace(fault, readers=()).at(fault.sizes[0]).text
-
-
-def groups_of(sources: Iterable[Source]) -> dict[str, list[Source]]:
-    """Return sources that err together by the name of their group, others by their own."""
-    groups: dict[str, list[Source]] = {}
-    for source in sources:
-        groups.setdefault(source.correlation_group or source.name, []).append(source)
-    return groups
 
 
 def bound(variant: Variant, interface: Interface, channel: str) -> str:

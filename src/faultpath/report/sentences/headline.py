@@ -17,6 +17,9 @@ from faultpath.report.sentences.phrases import (
     places,
 )
 
+_FEW_DIFFER = 10
+"""With fewer scenes that differ, a headline says how many there are."""
+
 
 def headline(result: AuditResult) -> str:
     """Return a sentence that rests on significant effects, led by the primary contrast, and in how
@@ -55,7 +58,7 @@ Sentence: TypeAlias = tuple[str, Sequence[Effect]]
 
 def _few_scenes(named: Sequence[Effect], unit: str) -> str:
     """Return in how few scenes the versions differ, of the effects that lead; else nothing."""
-    few = [effect for effect in named if effect.leads and effect.few_differ]
+    few = [effect for effect in named if effect.leads and sum(effect.ahead) < _FEW_DIFFER]
     if not few:
         return ""
     least = sorted(min(few, key=lambda effect: sum(effect.ahead)).ahead)

@@ -52,10 +52,8 @@ def interval(estimate: _Ends, digits: int = 1) -> str:
     return bracket((estimate.low, estimate.high), digits)
 
 
-def with_interval(estimate: Estimate | Difference | None, digits: int = 1) -> str:
-    """Return `−9.7 [−16.0, −4.0]`; a dash for an estimate that does not exist."""
-    if estimate is None:
-        return "–"
+def with_interval(estimate: Estimate | Difference, digits: int = 1) -> str:
+    """Return `−9.7 [−16.0, −4.0]`."""
     return f"{signed(estimate.value, digits)} {interval(estimate, digits)}".rstrip()
 
 
