@@ -158,7 +158,11 @@ def _bounded(side: str, limit: str, seen: str | None) -> Rule:
 def _within(least: str, most: str) -> Rule:
     """The value lies between two limits, or on them."""
     limits = Range(float(least), float(most))
-    return Rule(lambda c: limits.judge(c.value, c.interval, c.n_scenes), sided=False)
+
+    def judge(contrast: Contrast) -> Judged:
+        return limits.judge(contrast.value, contrast.interval, contrast.n_scenes)
+
+    return Rule(judge, sided=False)
 
 
 def _by_point(side: str, limit: str) -> Rule:
@@ -180,11 +184,20 @@ def _by_point(side: str, limit: str) -> Rule:
     return Rule(judge)
 
 
+def _reported() -> Rule:
+    """What there is: a quantity that was not run raises `NotRun`."""
+
+    def judge(contrast: Contrast) -> Judged:
+        return CONFIRMED
+
+    return Rule(judge)
+
+
 _SIDES = {"above": 1, "at least": 1, "below": -1, "at most": -1}
 BOUND = r".* is (above|below|at least|at most) (-?[\d.]+)"
 """Words that end in a bound."""
 _RULES: dict[str, Callable[..., Rule]] = {
-    r"reported: .*": lambda: Rule(lambda _: CONFIRMED),  # what was not run raises `NotRun`
+    r"reported: .*": _reported,
     r".* is significantly (above|below) 0": _detected,
     r".* is not significantly (above|below|different from) 0": _not_detected,
     r".* lies between (\S+) and (\S+)": _within,
