@@ -6,6 +6,7 @@ import shutil
 from base64 import b64encode
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from string import Template
 from typing import TYPE_CHECKING, Literal
 
 from blocks import IMAGES, REFERENCE, Wrong
@@ -17,16 +18,7 @@ if TYPE_CHECKING:
 MARGIN = 12.0
 SCHEMES: tuple[Literal["light"], Literal["dark"]] = ("light", "dark")
 MADE_FROM = IMAGES / "made-from.json"
-_SMALL = """async (png) => {
-  const picture = new Image();
-  picture.src = "data:image/png;base64," + png;
-  await picture.decode();
-  const canvas = document.createElement("canvas");
-  canvas.width = picture.width;
-  canvas.height = picture.height;
-  canvas.getContext("2d").drawImage(picture, 0, 0);
-  return canvas.toDataURL("image/webp", 0.8);
-}"""
+_SMALL = Path(__file__).with_name("smaller.js").read_text("utf-8")
 """Makes a screenshot a tenth of its size."""
 ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking"]
 
@@ -102,19 +94,9 @@ def picture(browser: "Browser", run: str, part: str) -> str:
 
 def twice(size: tuple[float, float], light: str, dark: str) -> str:
     """Return two pictures, given as data addresses, of which a reader sees the fitting one."""
-    box = 'width="{:g}" height="{:g}"'.format(*size)
-    shown = (
-        f'<image class="{scheme}" {box} href="{data}"/>'
-        for scheme, data in (("light", light), ("dark", dark))
-    )
-    css = (
-        ".dark { display: none } @media (prefers-color-scheme: dark) "
-        "{ .dark { display: inline } .light { display: none } }"
-    )
-    return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" {box} viewBox="0 0 {size[0]:g} {size[1]:g}">'
-        f"<style>{css}</style>{''.join(shown)}</svg>\n"
-    )
+    (width, height), place = size, Path(__file__).with_name("light_or_dark.svg")
+    fields = {"width": f"{width:g}", "height": f"{height:g}", "light": light, "dark": dark}
+    return Template(place.read_text("utf-8")).substitute(fields)
 
 
 def _around(areas: Sequence[Mapping[str, float]], margin: float) -> dict[str, float]:

@@ -17,20 +17,6 @@ WORDS = yaml.safe_load(Path(__file__).with_name("audits.yaml").read_text("utf-8"
 CAMERA_PLACES, CAMERA_FAULTS = WORDS["camera_places"], WORDS["camera_faults"]
 CAMERA_COMPARED = {place: words for place, words in CAMERA_PLACES.items() if place != "goal"}
 """Places of the page's table: a test of the live picture alone, and deployment."""
-COMPARED = {place: words for place, words in CAMERA_PLACES.items() if place != "goal"}
-"""Places of the page's table: a test of the live picture alone, and deployment."""
-CAMERA_FAULTS = {
-    "darker": "15 % darker",
-    "contrast": "gamma 1.3",
-    "moved": "shifted by 2 px",
-    "drifting": "drifting to 30 % darker",
-    "smeared": "smeared by 6 px",
-}
-COMPARED = {
-    1: "significantly more often",
-    -1: "significantly less often",
-    0: "without a significant difference",
-}
 
 
 def camera(study: str, part: str) -> Any:
@@ -72,7 +58,7 @@ def camera_answer(names: Sequence[str]) -> str:
         rows = [row for study in own for row in study["baseline"]]
         faults = {
             words: [CAMERA_FAULTS[row["fault"]] for row in rows if row["effect"][3] == sign]
-            for sign, words in COMPARED.items()
+            for sign, words in WORDS["camera_signs"].items()
         }
         clauses = (f"{words} ({series(own)})" for words, own in faults.items() if own)
         lines.append(f"- in {rooms} rooms {', '.join(clauses)}.")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from faultpath_paper.cells import Cell
 from faultpath_paper.claims.paying import judge
-from faultpath_paper.claims.rules import Bound
+from faultpath_paper.claims.rules import Range
 from faultpath_paper.pages.table_5 import REPAIRS
 from faultpath_paper.quantities.differences import crossing, greater_effect
 from faultpath_paper.results import Results
@@ -18,7 +18,7 @@ from faultpath.system import Status
 
 SCENES = 60
 REPAIR = REPAIRS["GRU/reconstruction-only"]
-UNDER_15, OVER_30 = Bound.of("below", "15"), Bound.of("above", "30")
+UNDER_15, OVER_30 = Range.of("below", "15"), Range.of("above", "30")
 
 
 def flown(costs: int, gains: int, scenes: int = SCENES) -> Results:

@@ -15,6 +15,7 @@ from faultpath.report.sentences import wording
 from faultpath.report.tables import MISSING, Entry, Table, line
 from faultpath.stats.estimate import Sign
 from faultpath_paper.answers import Reproduction
+from faultpath_paper.cells import data
 from faultpath_paper.pages.table_4 import GRID, NAMES, PAGE
 from faultpath_paper.report import words
 
@@ -23,19 +24,8 @@ BASELINE, REPAIR = "gru", "gru+dcc"
 ELSEWHERE = Path(__file__).parent / "data" / "reversal.json"
 WEIGHTS = "checkpoints/gru-trajectory-0.safetensors"
 """Weights that are fitted anew for every change of the platform."""
-COLUMNS = (
-    "Wrong values at the wind estimator alone",
-    "Wrong values shared",
-    "Change",
-    "Shared, by how often the fault occurs",
-    "Reversal",
-)
-QUESTION = (
-    "The paper reports a reversal: a wind estimator that was retrained to tolerate wrong values of "
-    "mass and thrust flies better than the original while only the estimator gets wrong values, "
-    "and worse once the predictor gets the same ones."
-)
-QUICK_RUN = "This quick run is too small to answer the question."
+_WORDS = data("words.yaml")
+QUESTION, QUICK_RUN, COLUMNS = _WORDS["question"], _WORDS["quick_run"], tuple(_WORDS["columns"])
 
 
 class PrintedEffect(Frozen):

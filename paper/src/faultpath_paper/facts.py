@@ -8,15 +8,7 @@ from faultpath_paper.cells import data
 
 Standing = Literal["as written", "our reading", "otherwise"]
 STANDINGS: tuple[Standing, ...] = get_args(Standing)
-SECTIONS = {
-    "IV-A": "IV-A, control architecture and information interface",
-    "IV-B": "IV-B, interventions and evidence",
-    "V": "V, prediction accuracy",
-    "VI": "VI, the fidelity gap",
-    "VII": "VII, the availability gap",
-    "VIII": "VIII, discussion, with Table V",
-    "Appendix": "Appendix, implementation",
-}
+SECTIONS: dict[str, str] = data("words.yaml")["sections"]
 """Sections of the paper that state facts."""
 
 

@@ -4,7 +4,7 @@ import re
 
 from faultpath_paper.answers import StatementPart
 from faultpath_paper.cells import Printed, published
-from faultpath_paper.claims.rules import BOUND, FEW_SCENES, REFUTED, Bound, Judged
+from faultpath_paper.claims.rules import BOUND, FEW_SCENES, REFUTED, Judged, Range
 from faultpath_paper.claims.statement import Statement, beside, size
 from faultpath_paper.detection import detection, enough, resampled
 from faultpath_paper.pages import table_5
@@ -24,7 +24,7 @@ def pays(words: str, repair: str) -> Statement:
 
     def part(results: Results) -> StatementPart:
         tradeoff = crossing(results, table_5.REPAIRS[repair])
-        judged = judge(tradeoff, Bound.of(*named.groups()))
+        judged = judge(tradeoff, Range.of(*named.groups()))
         ends = None if tradeoff.value is None else tradeoff.interval
         return StatementPart(
             words=words,
@@ -40,7 +40,7 @@ def pays(words: str, repair: str) -> Statement:
     return Statement(words, paper, part)
 
 
-def judge(tradeoff: Crossing, bound: Bound) -> Judged:
+def judge(tradeoff: Crossing, bound: Range) -> Judged:
     """Judge whether a break-even frequency meets a bound.
 
     Where the repair pays from no frequency on, it is refuted if the repair is detected behind under

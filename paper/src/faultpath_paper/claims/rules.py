@@ -8,6 +8,7 @@ figure that the paper reports.
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import inf
 from typing import NamedTuple
 
 from faultpath.stats.contrast import Contrast
@@ -102,53 +103,52 @@ def _not_detected(side: str) -> Rule:
 
 
 @dataclass(frozen=True)
-class Bound:
-    """A threshold, reached from above or from below."""
+class Range:
+    """Values that a statement names, on one side of a limit or between two."""
 
-    limit: float
-    sign: int
-    """1: at least; -1: at most."""
-    strict: bool
-    """Whether a value equal to the limit misses it."""
+    low: float = -inf
+    high: float = inf
+    strict: bool = False
+    """Whether a value equal to a limit misses it."""
 
     @classmethod
-    def of(cls, side: str, limit: str) -> "Bound":
-        """Return the bound of words such as `above` and `15`."""
-        return cls(float(limit), _SIDES[side], side in ("above", "below"))
+    def of(cls, side: str, limit: str) -> "Range":
+        """Return the range of words such as `above` and `15`."""
+        strict = side in ("above", "below")
+        if _SIDES[side] > 0:
+            return cls(low=float(limit), strict=strict)
+        return cls(high=float(limit), strict=strict)
 
-    def ahead(self, value: float) -> float:
-        """Return by how much a value is beyond the limit."""
-        return self.sign * (value - self.limit)
-
-    def meets(self, value: float) -> bool:
-        """Return whether a value meets the bound."""
-        return self.ahead(value) > 0 if self.strict else self.ahead(value) >= 0
+    def holds(self, value: float) -> bool:
+        """Return whether a value lies in the range."""
+        if self.strict:
+            return self.low < value < self.high
+        return self.low <= value <= self.high
 
     def judge(self, value: float, interval: Ends | None, n_scenes: int) -> Judged:
-        """Refute when the whole interval misses; confirm when all of it meets the bound.
+        """Refute when the whole interval misses; confirm when all of it lies inside.
 
         In a large enough run the estimate alone may confirm.
         """
         interval = telling(interval, n_scenes)
         if interval is None:
             return FEW_SCENES
-        near, far = interval if self.sign > 0 else interval[::-1]
-        if self.ahead(far) < 0:
+        low, high = interval
+        if high < self.low or low > self.high:
             return REFUTED
-        if not self.meets(value):
+        if not self.holds(value):
             return OPEN
-        if self.ahead(near) <= 0 and not points_decide(n_scenes):
-            return FEW_FOR_POINTS
-        return CONFIRMED
+        inside = self.low < low and high < self.high
+        return CONFIRMED if inside or points_decide(n_scenes) else FEW_FOR_POINTS
 
 
 def _bounded(side: str, limit: str, seen: str | None) -> Rule:
     """The value meets a bound; `seen`: and is detected on that side of 0."""
-    bound = Bound.of(side, limit)
+    bound = Range.of(side, limit)
 
     def judge(contrast: Contrast) -> Judged:
         met = bound.judge(contrast.value, contrast.interval, contrast.n_scenes)
-        if met == CONFIRMED and seen and detection(contrast) != bound.sign:
+        if met == CONFIRMED and seen and detection(contrast) != _SIDES[side]:
             return Judged("undecided", "met, but not significant")
         return met
 
@@ -156,24 +156,11 @@ def _bounded(side: str, limit: str, seen: str | None) -> Rule:
 
 
 def _within(least: str, most: str) -> Rule:
-    """The value lies between two limits, or on them.
-
-    Refuted when the whole interval misses; confirmed when all of it lies inside, or in a run that
-    is large enough the estimate alone.
-    """
-    lowest, highest = float(least), float(most)
+    """The value lies between two limits, or on them."""
+    limits = Range(float(least), float(most))
 
     def judge(contrast: Contrast) -> Judged:
-        interval = telling(contrast.interval, contrast.n_scenes)
-        if interval is None:
-            return FEW_SCENES
-        low, high = interval
-        if high < lowest or low > highest:
-            return REFUTED
-        if not lowest <= contrast.value <= highest:
-            return OPEN
-        inside = lowest < low and high < highest
-        return CONFIRMED if inside or points_decide(contrast.n_scenes) else FEW_FOR_POINTS
+        return limits.judge(contrast.value, contrast.interval, contrast.n_scenes)
 
     return Rule(judge, sided=False)
 
@@ -183,31 +170,34 @@ def _by_point(side: str, limit: str) -> Rule:
 
     A tie confirms no advantage.
     """
-    bound = Bound.of(side, limit)
+    bound = Range.of(side, limit)
 
     def judge(contrast: Contrast) -> Judged:
         if not enough(contrast):
             return FEW_SCENES
         if not points_decide(contrast.n_scenes):
             return FEW_FOR_POINTS
-        if bound.meets(contrast.value):
+        if bound.holds(contrast.value):
             return CONFIRMED
-        return REFUTED if bound.ahead(contrast.value) else TIED
+        return TIED if contrast.value == float(limit) else REFUTED
 
     return Rule(judge)
 
 
-def _reported(contrast: Contrast) -> Judged:
-    """Confirm what there is: a quantity that was not run raises `NotRun`."""
-    del contrast
-    return CONFIRMED
+def _reported() -> Rule:
+    """What there is: a quantity that was not run raises `NotRun`."""
+
+    def judge(contrast: Contrast) -> Judged:
+        return CONFIRMED
+
+    return Rule(judge)
 
 
 _SIDES = {"above": 1, "at least": 1, "below": -1, "at most": -1}
 BOUND = r".* is (above|below|at least|at most) (-?[\d.]+)"
 """Words that end in a bound."""
 _RULES: dict[str, Callable[..., Rule]] = {
-    r"reported: .*": lambda: Rule(_reported),
+    r"reported: .*": _reported,
     r".* is significantly (above|below) 0": _detected,
     r".* is not significantly (above|below|different from) 0": _not_detected,
     r".* lies between (\S+) and (\S+)": _within,

@@ -22,25 +22,17 @@ STILL = Setting()
 SEEN_THROUGH = Setting(others=(("clearance", "true"),))
 """Ground-truth clearance."""
 
-DKI = Cell(STILL, "dki")
-WM_A = Cell(STILL, "wm-a", seeds=SEEDS)
-WM_U = Cell(STILL, "wm-u", seeds=SEEDS)
-TRUE_PARAMETER = Cell(STILL, "true-parameter")
-PREDICTORS = (DKI, WM_A, WM_U, TRUE_PARAMETER)
-
-WM_A_SEEN = Cell(SEEN_THROUGH, "wm-a")
-TRUE_PARAMETER_SEEN = Cell(SEEN_THROUGH, "true-parameter")
-WITH_TRUE_CLEARANCE = (WM_A_SEEN, TRUE_PARAMETER_SEEN)
-
 CELLS = {
-    "DKI": DKI,
-    "WM-A": WM_A,
-    "WM-U": WM_U,
-    "true-parameter": TRUE_PARAMETER,
-    "WM-A/true-clearance": WM_A_SEEN,
-    "true-parameter/true-clearance": TRUE_PARAMETER_SEEN,
+    "DKI": Cell(STILL, "dki"),
+    "WM-A": Cell(STILL, "wm-a", seeds=SEEDS),
+    "WM-U": Cell(STILL, "wm-u", seeds=SEEDS),
+    "true-parameter": Cell(STILL, "true-parameter"),
+    "WM-A/true-clearance": Cell(SEEN_THROUGH, "wm-a"),
+    "true-parameter/true-clearance": Cell(SEEN_THROUGH, "true-parameter"),
 }
 """Cells by their keys as published."""
+PREDICTORS = DKI, WM_A, WM_U, TRUE_PARAMETER = tuple(CELLS.values())[:4]
+WITH_TRUE_CLEARANCE = tuple(CELLS.values())[4:]
 KEYS = {cell: key for key, cell in CELLS.items()}
 
 

@@ -13,35 +13,18 @@ from faultpath.report.sentences import wording
 from faultpath.report.tables import MISSING, Entry, Table, Tone, line, markdown_grid
 from faultpath.report.terminal import STYLES
 from faultpath_paper.answers import Answer, ClaimVerdict, Ledger, Size
+from faultpath_paper.cells import data
 from faultpath_paper.report import words
 
 _TONES: dict[Answer, Tone] = {"confirmed": "good", "refuted": "bad", "undecided": "faint"}
-_SHOWN: dict[str, AlignMethod] = {
-    "Claim": "left",
-    "Result": "left",
-    "Estimate": "right",
-    "Beside paper": "left",
-    "Detectable": "right",
-}
-_PRINTED = (
-    "What is claimed",
-    "Kind",
-    "Result",
-    "Estimate",
-    "Beside the paper",
-    "Detectable",
-    "The paper",
-)
+_SHOWN: dict[str, AlignMethod] = data("words.yaml")["shown"]
+_PRINTED: Sequence[str] = data("words.yaml")["printed"]
 _IN_SHORT: dict[Size, str] = {
     **words.BESIDE,
     "right sign, other size": "same direction",
     "not comparable": MISSING,
 }
 """Words of the terminal, which has few columns."""
-_FARTHEST = (
-    "Beside the paper: how our figures for the statements of a claim stand to those that the paper "
-    "prints. No result depends on it."
-)
 
 
 def ledger_view(ledger: Ledger, profile: str) -> RenderableType:
@@ -90,8 +73,14 @@ def ledger_markdown(ledger: Ledger, profile: str) -> str:
         for entries in [_entries(claim)]
     )
     texts = ("Kind", "Result", "Beside the paper", "The paper", "What is claimed")
-    table = markdown_grid(Table(corner="Claim", columns=_PRINTED, lines=tuple(lines), words=texts))
-    sizes = [markdown(f"{words.sizes(ledger)} {_FARTHEST}")] if words.sizes(ledger) else []
+    table = markdown_grid(
+        Table(corner="Claim", columns=tuple(_PRINTED), lines=tuple(lines), words=texts)
+    )
+    sizes = (
+        [markdown(f"{words.sizes(ledger)} {data('words.yaml')['farthest']}")]
+        if words.sizes(ledger)
+        else []
+    )
     head = f"{words.headline(ledger, profile)}.", markdown(f"{_about(ledger)}.")
     return "\n\n".join([*head, table, *sizes]) + "\n"
 

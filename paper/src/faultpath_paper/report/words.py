@@ -7,42 +7,26 @@ from faultpath.core.text import capital, counted
 from faultpath.report.escapes import unbroken
 from faultpath.report.sentences import wording
 from faultpath_paper.answers import Answer, ClaimVerdict, Ledger, Size, StatementPart
+from faultpath_paper.cells import data
 
 QUICK = "quick"
 """The profile whose runs are too small to be compared with the paper."""
-VERDICTS = (
-    "Results of the run that comes with faultpath: faultpath reproduce --judge, "
-    "docs/reproduction.md."
-)
-SIGNS: dict[Answer, str] = {"confirmed": "✓", "refuted": "✕", "undecided": "○"}
-SHOWN: dict[Answer, str] = {
-    "confirmed": "confirmed",
-    "refuted": "refuted",
-    "undecided": "inconclusive",
-}
+_WORDS = data("words.yaml")
+VERDICTS, NON_DETECTION = _WORDS["verdicts"], _WORDS["non_detection"]
+SIGNS: dict[Answer, str] = _WORDS["signs"]
+SHOWN: dict[Answer, str] = _WORDS["answers"]
 """How pages call an answer of the ledger."""
-ANSWERS: tuple[Answer, ...] = ("confirmed", "refuted", "undecided")
-
-SIZES: tuple[Size, ...] = ("compatible", "right sign, other size", "other size", "other sign")
-"""From the nearest to the paper's figure to the farthest."""
-BESIDE: dict[Size, str] = {
-    "compatible": "agrees",
-    "right sign, other size": "same direction, different size",
-    "other size": "different size",
-    "other sign": "opposite direction",
-    "not comparable": "cannot be compared",
-}
+ANSWERS: tuple[Answer, ...] = tuple(SHOWN)
+BESIDE: dict[Size, str] = _WORDS["sizes"]
 """How pages call a size: what our figure is beside the paper's."""
-_COUNTED_SIZES: dict[Size, tuple[str, str]] = {
-    "compatible": ("agrees", "agree"),
-    "right sign, other size": (
-        "has the same direction but a different size",
-        "have the same direction but a different size",
-    ),
-    "other size": ("has a different size", "have a different size"),
-    "other sign": ("points in the opposite direction", "point in the opposite direction"),
-}
+_COUNTED_SIZES: dict[Size, tuple[str, str]] = _WORDS["counted_sizes"]
 """The same of one figure and of several."""
+SIZES: tuple[Size, ...] = tuple(_COUNTED_SIZES)
+"""From the nearest to the paper's figure to the farthest."""
+KINDS: dict[str, str] = _WORDS["kinds"]
+"""Names of the kinds of claims: findings are tested, properties were matched beforehand."""
+KIND: dict[str, str] = _WORDS["kind"]
+"""The same of one claim."""
 _HYPHEN_FOR_MINUS = re.compile(r"(?<![\w.)\]])-(?=\d)")
 _SIGNS_IN_TEXT = ((">=", "≥"), ("<=", "≤"), ("->", "→"))
 _DIGITS = {"pp": 1, "percent": 1, "cm": 1, "errors": 0, "seeds": 0}
@@ -154,12 +138,6 @@ def sizes(ledger: Ledger) -> str:
     )
 
 
-KINDS = {"finding": "findings", "platform": "properties that the simulator was matched to"}
-"""Names of the kinds of claims: findings are tested, properties were matched beforehand."""
-KIND = {"finding": "finding", "platform": "matched property"}
-"""The same of one claim."""
-
-
 def headline(ledger: Ledger, profile: str) -> str:
     """Return the outcome of all claims in one sentence, kind by kind; a quick run has none."""
     if profile == QUICK:
@@ -193,10 +171,6 @@ def is_non_detection(claim: ClaimVerdict) -> bool:
 
 
 NOT_SIGNIFICANT = "is not significantly"
-NON_DETECTION = (
-    "An asterisk marks a claim that is confirmed because no difference is significant: that is no "
-    "proof that there is none."
-)
 
 
 def behind(unit: str) -> str:
