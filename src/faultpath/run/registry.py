@@ -24,7 +24,7 @@ from faultpath.core.error_source import described, note_system, ours
 from faultpath.core.error_source import location as where
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.text import extra
-from faultpath.core.trees import Root, imported, kind_of, package_paths
+from faultpath.core.trees import Root, imported, kind_of, loaded, package_paths
 from faultpath.run.apart import FOLDER, set_apart, working_directory
 from faultpath.run.opened import reads
 from faultpath.run.plan import SystemSpec
@@ -173,6 +173,10 @@ def _module(place: str, name: str) -> ModuleType:
             raise
     if (file := getattr(module, "__file__", None)) and not ours(module.__name__):
         note_system(file)
+        own = Path(os.path.realpath(file)).parent
+        files = (path for path in map(Path, loaded()) if path.is_relative_to(own))
+        # Keeps their digests: an edit while the system builds is not what was loaded.
+        imported(path for path in files if kind_of(path) == "local")
     return module
 
 
