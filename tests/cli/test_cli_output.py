@@ -2,15 +2,18 @@
 
 import os
 import subprocess
+from pathlib import Path
 
 import pytest
-from cli_runs import COMMAND, ROOT
+from cli_runs import COMMAND, ROOT, TOY
 
 from faultpath.cli.main import EXIT_BROKEN_PIPE
 
 REFERENCE = ROOT / "docs" / "reference"
 REPORT = ["report", REFERENCE / "toy", REFERENCE / "dock"]
 MISTAKE = ["report", "nowhere"]
+VARIANTS = ["--baseline", "calibrated", "--repair", "blind"]
+AUDIT = ["audit", TOY, *VARIANTS, "--fault", "gain:scale=0.6", "--library", "carts"]
 
 
 @pytest.mark.parametrize(("line", "stream"), [(REPORT, "stdout"), (MISTAKE, "stderr")])
@@ -28,6 +31,15 @@ def test_what_nobody_reads_ends_the_command(line: list[object], stream: str) -> 
 def test_a_closed_stream_changes_no_status(line: list[object], status: int, closed: str) -> None:
     done = subprocess.run(["sh", "-c", f'"$@" {closed}', "sh", *COMMAND, *line], timeout=60)
     assert done.returncode == status
+
+
+@pytest.mark.parametrize(("stream", "status"), [("2>&-", 0), ("2>/dev/full", 2)])
+def test_an_audit_whose_messages_nothing_takes(stream: str, status: int, tmp_path: Path) -> None:
+    """Workers start without standard error, and a full disk does not look like a finding, 1."""
+    line = [*COMMAND, *AUDIT, "--scenes", "2", "--workers", "1", "--out", tmp_path / "run"]
+    done = subprocess.run(["sh", "-c", f'"$@" {stream}', "sh", *line], timeout=60)
+    assert done.returncode == status
+    assert (tmp_path / "run" / "record.json").exists() == (status == 0)
 
 
 @pytest.mark.parametrize(

@@ -10,10 +10,12 @@ import pytest
 from stale_toys import Mine
 
 from faultpath.core.errors import UserError
+from faultpath.run.code import source_state, system_code
 from faultpath.run.execution.recheck import Rechecks
 from faultpath.run.execution.runner import run_plan
 from faultpath.run.plan import Task, Unit
 from faultpath.run.provenance import RunProvenance, run_provenance
+from faultpath.run.registry import load_system
 from faultpath.run.work.processes import local
 
 PLACES = ("file", "helper", "data")
@@ -56,6 +58,14 @@ def test_after_an_edit_nothing_stale_comes_back(mine, tmp_path):
         assert after.system_fingerprint != before.system_fingerprint
         assert _distances(after) == pytest.approx([x + 1.0 for x in _distances(before)])
         before = after
+
+
+def test_an_edit_while_the_system_builds_is_not_what_was_loaded(mine):
+    spec = mine.plan().system
+    before = source_state(spec)
+    system = load_system(spec)
+    _edit(mine, "file")
+    assert "my.py" not in before.changed(system_code(system, spec).state)
 
 
 def test_edited_back_the_trials_are_kept(mine, tmp_path):

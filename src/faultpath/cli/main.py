@@ -53,10 +53,11 @@ def main() -> NoReturn:
             status = _explain(error, ctrl_c.pressed, traced)
         except BrokenPipeError:
             status = EXIT_BROKEN_PIPE
+        except OSError:  # standard error takes nothing, as on a full disk
+            status = USER_ERROR
         if status is None:
             raise
-        if status == EXIT_BROKEN_PIPE:
-            _flush()
+        _flush()
     finally:
         ctrl_c.leave()
         warnings.showwarning = shown
@@ -76,11 +77,11 @@ def _prepare_output() -> None:
 
 
 def _flush() -> None:
-    """Let what is left of the output go nowhere where nobody reads it."""
+    """Let what is left of the output go nowhere where nothing takes it."""
     for stream in (sys.stdout, sys.stderr):
         try:
             stream.flush()
-        except BrokenPipeError:
+        except OSError:
             os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 

@@ -174,6 +174,15 @@ def _digests(files: Iterable[Path]) -> dict[Path, str]:
     return digests
 
 
+def keep_digests(folder: Path) -> None:
+    """Note the digests of the user's modules under a folder that this process has imported.
+
+    An edit after that, while a system builds, is not what was loaded.
+    """
+    files = [path for path in map(Path, loaded()) if path.is_relative_to(folder)]
+    _digests(path for path in files if kind_of(path) == "local")
+
+
 def loaded() -> dict[str, ModuleType]:
     """Return the modules that this process has imported, by file."""
     modules = [(getattr(m, "__file__", None), m) for m in tuple(sys.modules.values())]

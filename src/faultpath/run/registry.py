@@ -24,7 +24,7 @@ from faultpath.core.error_source import described, note_system
 from faultpath.core.error_source import location as where
 from faultpath.core.errors import SystemMistake, UserError
 from faultpath.core.text import extra
-from faultpath.core.trees import Root, imported, kind_of, ours, package_paths
+from faultpath.core.trees import Root, imported, keep_digests, kind_of, ours, package_paths
 from faultpath.run.apart import FOLDER, reads, set_apart, working_directory
 from faultpath.run.plan import SystemSpec
 from faultpath.system.checks import check_system
@@ -172,6 +172,7 @@ def _module(place: str, name: str) -> ModuleType:
             raise
     if (file := getattr(module, "__file__", None)) and not ours(module.__name__):
         note_system(file)
+        keep_digests(Path(os.path.realpath(file)).parent)
     return module
 
 

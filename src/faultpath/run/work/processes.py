@@ -133,6 +133,7 @@ class _Process:
         ours, theirs = socket.socketpair()
         lifeline, self.lifeline = os.pipe()
         path = os.pathsep.join(entry for entry in sys.path if entry)
+        output = sys.__stderr__ or subprocess.DEVNULL  # standard error may be closed
         # A blocked signal stays blocked in the child until it says how it takes it.
         mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         try:
@@ -141,7 +142,8 @@ class _Process:
                 pass_fds=(theirs.fileno(), lifeline),
                 env={**KEEP_MEMORY, **os.environ, **ONE_THREAD, "PYTHONPATH": path},
                 stdin=subprocess.DEVNULL,
-                stdout=sys.__stderr__,  # our standard output belongs to the command
+                stdout=output,  # our standard output belongs to the command
+                stderr=output,
             )
         finally:
             signal.pthread_sigmask(signal.SIG_SETMASK, mask)
