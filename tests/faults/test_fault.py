@@ -41,7 +41,7 @@ def test_readers_that_a_variant_lacks_are_left_out() -> None:
     assert resolve(calibration(0.1), INTERFACE, plain) == at_readers(everywhere, plain)
     assert at_readers(everywhere, {"observer"}) == resolve(aimed("observer"), INTERFACE)
     assert at_readers(at_readers(everywhere, {"observer"}), plain) == ()
-    with pytest.raises(UserError, match="reaches no reader: here are predictor"):
+    with pytest.raises(UserError, match=r"^fault 'mass scaled.* reaches no reader: here are predi"):
         resolve(aimed("observer"), INTERFACE, plain)
 
 
@@ -59,13 +59,7 @@ def test_faults_of_one_cause_share_it() -> None:
             [SCALE.model_copy(update={"channel": "mas"})],
             "unknown channel 'mas'; did you mean 'mass'?",
         ),
-        ([SCALE.aimed_at("predicter")], "unknown reader 'predicter'; did you mean 'predictor'?"),
-        ([SCALE.aimed_at("observer.model")], "channel 'mass': 'observer.model' does not read it"),
         (aimed("predictor.wind_map"), "channel 'mass' and channel 'thrust': "),
-        (
-            [Fault(channel="wind", intervention=kinds.Offset(by=(1.0, 2.0)))],
-            "channel 'wind': offset has 2 numbers, and the reading of one scene has 3",
-        ),
     ],
 )
 def test_a_fault_that_cannot_act_is_a_users_mistake(faults: list[Fault], sentence: str) -> None:

@@ -1,9 +1,12 @@
 """An example on a package of other people: loading it, one trial of it, whom a fault reached."""
 
 from collections.abc import Sequence
+from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from typing import Any
+
+import pytest
 
 from faultpath.run.attempt import attempt
 from faultpath.run.plan import Treatment
@@ -16,6 +19,15 @@ def loaded(path: Path) -> Any:
     spec = spec_from_file_location(path.stem, path)
     module = module_from_spec(spec)
     spec.loader.exec_module(module)
+    return module
+
+
+def imported(patch: pytest.MonkeyPatch, file: str, **settings: object) -> Any:
+    """Return an example as those beside it import it, with other settings."""
+    patch.syspath_prepend(str(ROOT / "examples"))
+    module = import_module(file.removesuffix(".py"))
+    for name, value in settings.items():
+        patch.setattr(module, name, value)
     return module
 
 

@@ -14,11 +14,11 @@ import pytest
 pytest.importorskip("torch")
 
 import torch
+from foreign_trials import imported
 from pyarrow.parquet import read_table
 
 from faultpath import audit
 
-ROOT = Path(__file__).resolve().parents[2]
 FAULT = "joints:offset=0.1/0.1/0.1"
 STATE = "observation.state"
 NAMES = ["shoulder.pos", "elbow.pos", "Gripper", "wrist.pos"]
@@ -32,18 +32,16 @@ def lerobot():
     return import_module("lerobot_processor").processor()
 
 
-def imported(patch, classes):
+def example_on(patch, classes):
     """Return the example, imported anew with these classes; without any it takes the copy."""
-    patch.syspath_prepend(str(ROOT / "examples"))
     patch.setitem(sys.modules, "lerobot.processor", classes)
     patch.delitem(sys.modules, "lerobot_relative_actions", raising=False)
-    return import_module(Path("lerobot_relative_actions.py").stem)
+    return imported(patch, "lerobot_relative_actions.py")
 
 
 @pytest.fixture
 def copy(monkeypatch):
-    monkeypatch.syspath_prepend(str(ROOT / "examples"))
-    return import_module(Path("lerobot_steps.py").stem)
+    return imported(monkeypatch, "lerobot_steps.py")
 
 
 def flown(example, **settings):
@@ -102,7 +100,7 @@ def test_an_audit_on_lerobots_classes_has_the_bits_of_one_on_the_copy(lerobot, t
     weights = None
     for name, classes in (("copy", None), ("lerobot", lerobot)):
         with pytest.MonkeyPatch.context() as patch:
-            example = imported(patch, classes)
+            example = example_on(patch, classes)
             theirs = example.RelativeActionsProcessorStep is lerobot.RelativeActionsProcessorStep
             assert theirs == (name == "lerobot")
             # The last bits of a fit depend on where its arrays lie in memory: both take one.
@@ -116,7 +114,7 @@ def test_an_audit_on_lerobots_classes_has_the_bits_of_one_on_the_copy(lerobot, t
 
 
 def test_a_shared_offset_cancels_and_the_repair_loses_that(monkeypatch):
-    example = imported(monkeypatch, None)
+    example = example_on(monkeypatch, None)
     record = flown(example, library="training", scenes=20).record
     effects = {effect.condition: effect for effect in record.effects}
     assert set(effects) == {"correct", "conversion", "policy", "shared"}

@@ -1,13 +1,11 @@
 """motulator's drive, untouched: our loop is its own, and a fault reaches who reads."""
 
-from importlib import import_module
-
 import numpy as np
 import pytest
 
 pytest.importorskip("motulator")
 
-from foreign_trials import ROOT, attempted, faulted
+from foreign_trials import ROOT, attempted, faulted, imported
 from motulator.common.utils import abc2complex
 
 from faultpath import generator
@@ -21,11 +19,7 @@ PARTS = ("reference_gen", "current_ctrl", "observer")
 @pytest.fixture
 def example(monkeypatch):
     """The example, with short trials in which the torque is ordered early."""
-    monkeypatch.syspath_prepend(str(ROOT / "examples"))
-    module = import_module(EXAMPLE.removesuffix(".py"))
-    monkeypatch.setattr(module, "STEPS", STEPS)
-    monkeypatch.setattr(module, "ORDERED_S", 0.02)
-    return module
+    return imported(monkeypatch, EXAMPLE, STEPS=STEPS, ORDERED_S=0.02)
 
 
 def held(ctrl):

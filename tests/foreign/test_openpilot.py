@@ -12,7 +12,7 @@ pytest.importorskip("cffi")
 if which("gcc") is None:
     pytest.skip("gcc, which compiles the firmware, is not here", allow_module_level=True)
 
-from foreign_trials import ROOT, attempted, faulted, lines
+from foreign_trials import ROOT, attempted, faulted, imported, lines
 from opendbc.can import CANPacker
 from opendbc.can.parser import get_raw_value
 from opendbc.car import structs
@@ -29,10 +29,7 @@ SCENE, OTHER = "seed/2", "seed/3"
 @pytest.fixture
 def example(monkeypatch):
     """The example, with trials that end before the bend."""
-    monkeypatch.syspath_prepend(str(ROOT / "examples"))
-    module = import_module(EXAMPLES[0].removesuffix(".py"))
-    monkeypatch.setattr(module, "STEPS", 80)
-    return module
+    return imported(monkeypatch, EXAMPLES[0], STEPS=80)
 
 
 class Drive:

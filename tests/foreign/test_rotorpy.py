@@ -1,15 +1,13 @@
 """RotorPy, untouched: it flies in our loop as in its own, and a fault reaches who reads."""
 
-from importlib import import_module
 from itertools import count
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 pytest.importorskip("rotorpy")
 
-from foreign_trials import ROOT, attempted, faulted
+from foreign_trials import ROOT, attempted, faulted, imported
 from rotorpy.controllers.quadrotor_control import SE3Control
 from rotorpy.estimators.wind_ukf import WindUKF
 from rotorpy.sensors.external_mocap import MotionCapture
@@ -31,10 +29,7 @@ SCENE, STEPS = "seed/7", 60
 def example():
     """The example, with short flights."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(str(ROOT / "examples"))
-        found = import_module(Path("rotorpy_wind.py").stem)
-        patch.setattr(found, "STEPS", STEPS)
-        yield found
+        yield imported(patch, "rotorpy_wind.py", STEPS=STEPS)
 
 
 class FirstExact(MotionCapture):

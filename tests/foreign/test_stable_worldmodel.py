@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from foreign_trials import ROOT, attempted, faulted
+from foreign_trials import attempted, faulted, imported
 
 if find_spec("stable_worldmodel") is None:  # importing it is the example's, which knows how
     pytest.skip("stable-worldmodel is not installed", allow_module_level=True)
@@ -21,10 +21,8 @@ SCENES = ("seed/20", "seed/21")
 def example():
     """The example, with a planner of few samples."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(str(ROOT / "examples"))
-        module = import_module(Path("stable_worldmodel_camera.py").stem)
-        patch.setattr(module, "CEM", {"num_samples": 32, "n_steps": 3, "topk": 4})
-        yield module
+        few = {"num_samples": 32, "n_steps": 3, "topk": 4}
+        yield imported(patch, "stable_worldmodel_camera.py", CEM=few)
 
 
 @pytest.fixture

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 import torch
+from plain import composed
 from repair_toys import INTERFACE, SHORT, Net, windows
 
 from faultpath.core.errors import UserError
@@ -13,7 +14,7 @@ from faultpath.learning import Learned, errors, fit, uncertainty_training, withh
 from faultpath.loop import Batch, Inputs, Module, Port, Reading, Taps
 from faultpath.run.attempt import taps_of
 from faultpath.run.plan import Treatment
-from faultpath.system import ComposedSystem, FunctionPlant, Parts
+from faultpath.system import ComposedSystem, Parts
 
 GAIN, VELOCITY = Port("gain", "model"), Port("velocity", "difference")
 
@@ -34,18 +35,13 @@ class Brake(Module):
 
 
 def system(*variants: Module) -> ComposedSystem:
-    plant = FunctionPlant(
+    return composed(
+        {f"variant_{i}": Parts("One of them.", [m]) for i, m in enumerate(variants)},
+        dict.fromkeys(("place", "gain", "bias", "push"), "1"),
         lambda rng: {"place": rng.uniform(1, 2), "gain": rng.uniform(0.5, 1.5), "bias": 0.0},
         lambda state, push, rng: state | {"place": state["place"] + state["gain"] * push},
-        observes={"place": "place", "gain": "gain", "bias": "bias"},
-        action="push",
         steps=5,
-        dt_s=0.1,
-        succeeded=lambda episode: bool(abs(episode["place"][-1]) < 0.05),
     )
-    units = dict.fromkeys(("place", "gain", "bias", "push"), "1")
-    parts = {f"variant_{i}": Parts("One of them.", [m]) for i, m in enumerate(variants)}
-    return ComposedSystem("cart", plant, parts, units)
 
 
 def fly(made: ComposedSystem, variant: str, *faults: Fault, scenes=("seed/1", "seed/2")):

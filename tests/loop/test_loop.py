@@ -25,8 +25,9 @@ from faultpath.loop import (
 from faultpath.loop import interface_of as derived
 from faultpath.run.check.reads import Enough, ReadLog
 
-DT_S = 0.1
 SCENES = ("a", "b")
+RUN = {"scenes": SCENES, "dt_s": 0.1}
+BATCH = Batch(SCENES, 0, 0.1)
 
 
 def interface_of(parts, place=""):
@@ -36,10 +37,10 @@ def interface_of(parts, place=""):
 def execute(modules, faults=(), place="", trace=None, guard=False, plant=None):
     """Return the instants and the taps of one execution."""
     interface, parts = wired(modules, place, plant)
-    options = {"scenes": SCENES, "dt_s": DT_S, "privileged": ("field",), "guard": guard}
-    taps = Taps(interface, resolve(faults, interface), **options, observer=trace)
+    options = {"privileged": ("field",), "guard": guard, "observer": trace}
+    taps = Taps(interface, resolve(faults, interface), **RUN, **options)
     with contextlib.suppress(Enough):
-        return list(Loop(interface, parts).execute(Batch(SCENES, 0, DT_S), taps)), taps
+        return list(Loop(interface, parts).execute(BATCH, taps)), taps
     return [], taps
 
 
@@ -230,7 +231,7 @@ def test_a_truth_that_is_declared_is_read() -> None:
 def test_a_privileged_source_is_not_read_unasked() -> None:
     interface, parts = wired((Guess(), Planner()))
     with pytest.raises(IllegalRead, match="privileged"):
-        list(Loop(interface, parts).execute(_batch(), Taps(interface, scenes=SCENES, dt_s=0.1)))
+        list(Loop(interface, parts).execute(BATCH, Taps(interface, **RUN)))
 
 
 def test_a_trace_says_who_read_what_of_which_step() -> None:
@@ -279,9 +280,9 @@ def test_a_fault_reaches_the_readers_of_all_that_a_module_writes() -> None:
     assert interface.reconstructs == {"observer": ("speed", "guess")}
     reached = ("observer.seen", "planner.start", "planner.feedback")
     assert transitive_readers(interface, "position") == reached
-    taps = Taps(interface, resolve(fault("position:scale=2"), interface), scenes=SCENES, dt_s=0.1)
+    taps = Taps(interface, resolve(fault("position:scale=2"), interface), **RUN)
     parts = graph(interface, Line(), (observer, pilot))
-    list(Loop(interface, parts).execute(_batch(), taps))
+    list(Loop(interface, parts).execute(BATCH, taps))
     assert pilot.answers == [[6.0, 12.0]] * Line.steps
 
 
@@ -294,12 +295,7 @@ def test_a_loop_is_executed_as_often_as_wanted_and_ends_where_nothing_runs():
     loop = Loop(interface, parts)
 
     def execution():
-        taps = Taps(interface, scenes=SCENES, dt_s=0.1, privileged=("field",))
-        return loop.execute(_batch(), taps)
+        return loop.execute(BATCH, Taps(interface, **RUN, privileged=("field",)))
 
     together = [(one.step, two.step) for one, two in zip(execution(), execution(), strict=True)]
     assert together == [(0, 0), (1, 1), (2, 2), (3, 3)]
-
-
-def _batch() -> Batch:
-    return Batch(SCENES, 0, 0.1)

@@ -82,11 +82,6 @@ def test_steps_do_not_run_backwards() -> None:
         ({"bindings": {"wind": "scale"}}, "channel 'wind' cannot be bound: unknown source 'scale'"),
         ({"privileged": {"oracle"}}, "unknown source 'oracle'"),
         ({"readers": {"pilot.x"}}, "this variant's readers: unknown reader 'pilot.x'"),
-        ({"faults": [SCALE.aimed_at("pilot")]}, "channel 'mass': unknown reader 'pilot'"),
-        (
-            {"faults": [SCALE], "readers": {"predictor.dynamics"}},
-            "fault 'mass scaled by 2 at observer.model' reaches no reader",
-        ),
     ],
 )
 def test_wrong_names_are_a_users_mistake(given: dict[str, Any], sentence: str) -> None:

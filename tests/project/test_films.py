@@ -32,11 +32,9 @@ def film(request: pytest.FixtureRequest) -> Picture:
     return FILMS[request.param]()
 
 
-def test_the_files_are_what_the_program_makes(film: Picture) -> None:
+def test_a_film_is_a_small_file_with_a_still_beside_it(film: Picture) -> None:
     assert [path.name for path in film.files] == [film.name, film.name.replace(".", "-still.")]
-    for path, content in film.files.items():
-        assert path.read_text("utf-8") == content
-        assert path.stat().st_size < 1_000_000
+    assert max(map(len, film.files.values())) < 1_000_000
 
 
 def test_a_film_moves_without_a_script_and_its_still_does_not(film: Picture) -> None:

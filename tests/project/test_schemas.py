@@ -42,11 +42,9 @@ def validator(name: str) -> Any:
     return jsonschema.Draft202012Validator(schema)
 
 
-def test_they_are_those_of_the_models() -> None:
-    texts = schema_files.files()
-    assert set(schema_files.FOLDER.iterdir()) == set(texts)
-    stale = [path.name for path, text in texts.items() if path.read_text("utf-8") != text]
-    assert stale == [], "run python tools/documents.py"
+def test_there_is_none_that_no_model_has() -> None:
+    """What they say is compared with the models as every generated document is."""
+    assert set(schema_files.FOLDER.iterdir()) == set(schema_files.files())
 
 
 @pytest.mark.parametrize("path", RESULTS, ids=lambda path: path.parent.name)
@@ -56,11 +54,8 @@ def test_stored_results_fit(path: Path) -> None:
     assert not validator(path.stem).is_valid({**result, "format": "none"})
 
 
-@pytest.mark.parametrize(("name", "content"), FITTING)
-def test_what_is_taken_fits(name: str, content: dict[str, object]) -> None:
-    validator(name).validate(content)
-
-
-@pytest.mark.parametrize(("name", "content"), WRONG)
-def test_what_is_refused_does_not_fit(name: str, content: dict[str, object]) -> None:
-    assert not validator(name).is_valid(content)
+@pytest.mark.parametrize(
+    ("name", "content", "fits"), [*((*c, True) for c in FITTING), *((*c, False) for c in WRONG)]
+)
+def test_what_is_taken_fits_and_nothing_else(name: str, content: Any, fits: bool) -> None:
+    assert validator(name).is_valid(content) is fits

@@ -7,7 +7,7 @@ from gymnasium.spaces import Box, Dict, Discrete
 from faultpath.loop import Module, Port
 from faultpath.run.attempt import taps_of
 from faultpath.run.plan import Treatment
-from faultpath.system import ComposedSystem, FunctionPlant
+from faultpath.system import ComposedSystem
 from faultpath.system.gymnasium import GymnasiumPlant
 
 REAL = Box(-np.inf, np.inf, (1,), np.float64)
@@ -74,12 +74,6 @@ def kept(episode):
 def plant(environment=Walk, **options):
     options = {"observes": {"place": 0}, "steps": 20, "succeeded": kept} | options
     return GymnasiumPlant(environment, action="push", **options)
-
-
-def functions(start, step, action="push", steps=2, succeeded=lambda episode: True, **options):
-    """Return a plant of plain functions in which every scene succeeds."""
-    options = {"dt_s": 0.1, "steps": steps, "succeeded": succeeded} | options
-    return FunctionPlant(start, step, action=action, **options)
 
 
 def system(world, modules=None, **options):

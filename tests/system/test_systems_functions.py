@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
-from gym_toys import SCENES, Steer, functions, trials
+from gym_toys import SCENES, Steer, trials
 from libraries import LIBRARIES
+from plain import functions
 
 from faultpath.core.errors import SystemMistake
 from faultpath.faults import parse_fault
@@ -25,35 +26,37 @@ def step(state, push, rng):
     return {"at": at, "clock": state["clock"] + 1}
 
 
-def cart(**options):
+def cart(start=start, step=step, **options):
+    observes = {"place": "at", "clock": "clock"}
+    plant = functions(start, step, steps=6, dt_s=0.5, observes=observes, **options)
+    return ComposedSystem("cart", plant, {"only": [Steer()]}, UNITS)
+
+
+def beyond(state):
+    return abs(state["at"]) > 1.5
+
+
+def test_a_scene_ends_where_over_says_so_and_is_frozen():
     episodes = []
 
     def note(episode):
         episodes.append(episode)
         return not episode.terminated
 
-    more = {"over": lambda state: abs(state["at"]) > 1.5, "succeeded": note} | options
-    observes = {"place": "at", "clock": "clock"}
-    plant = functions(start, step, steps=6, dt_s=0.5, observes=observes, **more)
-    built = ComposedSystem("cart", plant, {"only": [Steer()]}, UNITS)
+    built = cart(over=beyond, succeeded=note)
     episodes.clear()
-    return built, episodes
-
-
-def test_a_scene_ends_where_over_says_so_and_is_frozen():
-    built, episodes = cart()
     outcomes = trials(built)
     assert {o.status for o in outcomes} == {Status.SUCCESS, Status.CRASH}
     assert sorted(len(e.rewards) * 0.5 for e in episodes) == sorted(o.time_s for o in outcomes)
     assert all(list(e["clock"]) == list(range(len(e.rewards) + 1)) for e in episodes)
     for episode in episodes:
-        beyond = np.abs(episode["place"]) > 1.5
-        assert not beyond[:-1].any()
-        assert beyond[-1] == episode.terminated
+        fell = np.abs(episode["place"]) > 1.5
+        assert not fell[:-1].any()
+        assert fell[-1] == episode.terminated
 
 
 def test_noise_belongs_to_scene_seed_and_step_and_not_to_who_runs_beside():
-    built, _ = cart()
+    built = cart(over=beyond)
     by_scene = {o.scene: o for o in trials(built)}
     mixed = [SCENES[i] for i in (3, 1)]
     assert trials(built, mixed) == [by_scene[scene] for scene in mixed]
@@ -148,11 +151,10 @@ def test_a_real_number_that_becomes_whole_stays_real_alone_as_beside_others():
     def stopped(state, push, rng):
         return state | {"at": max(0, state["at"] - 1.0), "clock": state["clock"] + 1}
 
-    plant = functions(start, stopped, steps=4, observes={"place": "at", "clock": "clock"})
-    built = ComposedSystem("cart", plant, {"only": [Steer()]}, UNITS)
+    built = cart(step=stopped)
     shifted = parse_fault("place:offset=0.3", built.interface, {}, 0.1)
     done = attempt(built, Treatment(variant="only", faults=shifted), SCENES[:1])
-    assert done.outcomes[0].altered_steps == 4
+    assert done.outcomes[0].altered_steps == 6
 
 
 def test_a_key_that_the_state_has_not_is_told_with_those_that_it_has():
@@ -168,11 +170,7 @@ def test_a_state_may_hold_what_has_another_shape_in_each_scene():
     def moved(state, push, rng):
         return step(state, push, rng) | {"obstacles": state["obstacles"]}
 
-    observes = {"place": "at", "clock": "clock"}
-    plant = functions(drawn, moved, steps=6, dt_s=0.5, observes=observes)
-    built = ComposedSystem("cart", plant, {"only": [Steer()]}, UNITS)
-    assert (
-        len({len(world.observation["obstacles"]) for world in map(plant.world, SCENES, [0] * 6)})
-        > 1
-    )
+    built = cart(drawn, moved)
+    worlds = map(built.plant().world, SCENES, [0] * 6)
+    assert len({len(world.observation["obstacles"]) for world in worlds}) > 1
     assert [outcome.failed for outcome in trials(built)] == [False] * len(SCENES)

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from gym_toys import functions
+from plain import composed, stepped
 
 from faultpath import audit
 from faultpath.core.errors import SystemMistake
@@ -15,7 +15,7 @@ from faultpath.loop import Batch, Inputs, NotDelivered, Port
 from faultpath.run.attempt import attempt
 from faultpath.run.plan import Treatment
 from faultpath.run.work.executor import Failed
-from faultpath.system import ComposedSystem, shared_objects, tapped, writes
+from faultpath.system import shared_objects, tapped, writes
 
 
 @dataclass
@@ -101,18 +101,13 @@ def test_a_number_is_real_whether_or_not_python_makes_it_whole():
 def test_a_mapping_is_delivered_however_it_is_read():
     seen = {}
 
-    def make():
-        return tapped({"mass": 1.0, "treatment": 0.2}, "mass", at="control")
-
     def read(par):
         seen.update(item=par["mass"], get=par.get("mass"), missing=par.get("span", 7))
         seen.update(copied=dict(par), spread={**par}, values=list(par.values()))
         seen.update(default=par.setdefault("mass", 9.0), popped=par.copy().pop("mass"))
         return par["mass"]
 
-    module = writes("out", of=make)(read)
-    readings = {Port("mass", "control.mass"): np.array([4.0])}
-    module.step(Inputs("module", 0, readings, {}), module.begin(Batch(("a",), 0, 0.1)))
+    stepped(lambda: tapped({"mass": 1.0, "treatment": 0.2}, "mass", at="part"), read, mass=4.0)
     both = {"mass": 4.0, "treatment": 0.2}
     assert (seen.pop("copied"), seen.pop("spread")) == (both, both)
     assert (seen.pop("default"), seen.pop("popped")) == (4.0, 4.0)
@@ -133,10 +128,7 @@ def _pops(par):
     ],
 )
 def test_what_a_reader_writes_into_a_mapping_is_its_own_however_it_writes(write, value):
-    module = writes("out", of=lambda: tapped({"mass": 1.0}, "mass", at="control"))(write)
-    readings = {Port("mass", "control.mass"): np.array([4.0])}
-    outputs, _ = module.step(Inputs("module", 0, readings, {}), module.begin(Batch(("a",), 0, 0.1)))
-    assert outputs["out"].tolist() == [value]
+    assert stepped(lambda: tapped({"mass": 1.0}, "mass", at="part"), write, mass=4.0) == [value]
 
 
 def test_mistakes_are_told_in_a_sentence():
@@ -193,16 +185,14 @@ def drive(gain, late=False):
 
 
 def system(**variants):
-    plant = functions(
+    return composed(
+        {name: [module] for name, module in variants.items()},
+        {"current": "A", "flux": "Vs", "voltage": "V"},
         lambda rng: {"current": rng.normal(), "flux": 0.5},
         lambda state, action, rng: state | {"current": 0.5 * state["current"] - 0.1 * action},
-        observes={"current": "current", "flux": "flux"},
         action="voltage",
         steps=10,
-        succeeded=lambda episode: abs(float(episode["current"][-1])) < 0.2,
     )
-    units = {"current": "A", "flux": "Vs", "voltage": "V"}
-    return ComposedSystem("drive", plant, {name: [m] for name, m in variants.items()}, units)
 
 
 @pytest.mark.usefixtures("without_pages")
@@ -244,17 +234,14 @@ def test_a_scene_that_reads_seldom_gets_the_same_whoever_reads_beside_it(fault):
             parts.seen = parts.par.flux
         return parts.seen
 
-    plant = functions(
-        lambda rng: {"current": 0.0, "flux": 0.0, "every": int(rng.integers(2, 5))},
-        lambda state, voltage, rng: (
-            state | {"current": state["current"] - voltage, "flux": state["flux"] + 1.0}
-        ),
-        observes={"current": "current", "flux": "flux", "every": "every"},
+    built = composed(
+        {"only": [seldom]},
+        {"flux": "Vs", "voltage": "V", "every": "1"},
+        lambda rng: {"flux": 0.0, "every": int(rng.integers(2, 5))},
+        lambda state, voltage, rng: state | {"flux": state["flux"] + 1.0},
         action="voltage",
         steps=10,
     )
-    units = {"current": "A", "flux": "Vs", "voltage": "V", "every": "1"}
-    built = ComposedSystem("drive", plant, {"only": [seldom]}, units)
     treatment = Treatment(variant="only", faults=parse_fault(fault, built.interface, {}, 0.1))
     scenes = tuple(f"seed/{i}" for i in range(4))
     together = attempt(built, treatment, scenes)

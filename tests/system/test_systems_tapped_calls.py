@@ -6,16 +6,15 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from gym_toys import functions
+from plain import composed, stepped
 
-from faultpath import audit
 from faultpath.core.errors import SystemMistake
 from faultpath.faults import parse_fault
-from faultpath.loop import Batch, Inputs, NotDelivered, Port
+from faultpath.loop import Inputs, NotDelivered, Port
 from faultpath.run.attempt import attempt
 from faultpath.run.plan import Treatment
 from faultpath.run.work.executor import Failed
-from faultpath.system import ComposedSystem, tapped, writes
+from faultpath.system import tapped, writes
 
 
 class Filter:
@@ -51,13 +50,6 @@ class Product:
     time: float
     speed: float
     scale: float = 1.0
-
-
-def stepped(of, function, **values):
-    """Return what a module gets for one scene, to which these values are delivered at `part`."""
-    module = writes("out", of=of)(function)
-    rows = {Port(name, f"part.{name}"): np.array([value]) for name, value in values.items()}
-    return module.step(Inputs("module", 0, rows, {}), module.begin(Batch(("a",), 0, 0.1)))[0]["out"]
 
 
 @pytest.mark.parametrize(
@@ -165,36 +157,26 @@ def cruise(limits=True):
     return writes("push", of=make)(push)
 
 
-def system(**variants):
-    plant = functions(
+def attempted(limits, fault):
+    cruising = composed(
+        {"only": [cruise(limits)]},
+        {"time": "s", "speed": "m/s", "push": "m/s"},
         lambda rng: {"time": 0.0, "speed": rng.normal()},
         lambda state, push, rng: {"time": state["time"] + 0.1, "speed": state["speed"] - push},
-        observes={"time": "time", "speed": "speed"},
-        action="push",
-        steps=10,
-        succeeded=lambda episode: abs(float(episode["speed"][-1])) < 0.2,
     )
-    units = {"time": "s", "speed": "m/s", "push": "m/s"}
-    return ComposedSystem("cruise", plant, {n: [m] for n, m in variants.items()}, units)
+    faults = parse_fault(fault, cruising.interface, {}, 0.1)
+    return attempt(cruising, Treatment(variant="only", faults=faults), ("seed/1",))
 
 
-@pytest.mark.usefixtures("without_pages")
-def test_calls_between_their_parts_are_readers_of_their_own() -> None:
-    run = audit(
-        system(one=cruise(), two=cruise()), baseline="one", repair="two", fault="speed:scale=3"
-    )
-    assert [cell.name for cell in run.record.conditions] == [
-        "correct",
-        "filter",
-        "limits",
-        "shared",
-    ]
+@pytest.mark.parametrize("part", ["filter", "limits"])
+def test_a_fault_of_one_call_between_their_parts_reaches_that_call_alone(part) -> None:
+    taps = attempted(True, f"speed:scale=3@{part}").taps
+    acted = {tap.reader: tap.faulted_steps for tap in taps if tap.channel == "speed"}
+    assert acted == {"filter.speed": 0, "limits.speed": 0} | {f"{part}.speed": 2}
 
 
 def test_a_fault_stops_where_the_method_is_never_called() -> None:
-    cruising = system(one=cruise(limits=False))
-    faults = parse_fault("speed:scale=3", cruising.interface, {}, 0.1)
-    reply = attempt(cruising, Treatment(variant="one", faults=faults), ("seed/1",))
+    reply = attempted(False, "speed:scale=3")
     assert isinstance(reply, Failed)
     assert isinstance(reply.error, NotDelivered)
     assert "speed -> limits.speed" in str(reply.error)
