@@ -74,7 +74,7 @@ test-pythons: ## Run the engine's tests under the other Pythons that are found h
 	  $(MAKE) --no-print-directory .venv-$$version/ready OTHER=$$python && \
 	  .venv-$$version/bin/python -m compileall -qq src && \
 	  OMP_NUM_THREADS=1 .venv-$$version/bin/python -m pytest -n $(JOBS) --dist worksteal \
-	    --engine-alone --ignore tests/project -m "not browser" -p no:cacheprovider $(ARGS) \
+	    --ignore tests/project -m "not browser" -p no:cacheprovider $(ARGS) \
 	    || failed="$$failed $$version"; \
 	done; \
 	[ -z "$$failed" ] || { echo "The engine's tests fail under Python$$failed."; exit 1; }

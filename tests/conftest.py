@@ -30,17 +30,14 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         "--fuzz-seed", default="1", help="Seed of the fuzz tests, a number or `random`."
     )
     parser.addoption("--fuzz-whole", action="store_true", help="Try all odd inputs, not a few.")
-    parser.addoption(
-        "--engine-alone", action="store_true", help="Leave out what needs torch or the quadrotor."
-    )
     parser.addoption("--approve", action="store_true", help="Write texts that tests compare anew.")
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    if config.getoption("--engine-alone"):
+    if not find_spec("torch"):
         config.pluginmanager.register(EngineAlone(), "engine-alone")
-    elif find_spec("faultpath_quadrotor") and find_spec("torch"):
-        import_module("faultpath_quadrotor")  # tells torch what to use, before a test computes
+    elif find_spec("faultpath_quadrotor"):
+        import_module("faultpath_quadrotor")  # configures torch before any test uses it
 
 
 @pytest.fixture(autouse=True, scope="session")

@@ -1,7 +1,8 @@
-"""What of the tests runs where the engine is alone, as under Pythons for which torch has no build.
+"""Skips tests that need more than the engine, where torch is not installed.
 
-With `--engine-alone`, a test that needs a package which is missing and which the engine can do
-without is skipped; pytest lists each with the package. Else a missing package is a mistake.
+Such an environment is that of `pip install -e ".[test]"`, or of a Python for which torch has no
+build. pytest lists each skipped test with the package that it needs. With torch, a missing package
+is an error.
 """
 
 import inspect
@@ -12,24 +13,37 @@ from typing import Any
 
 import pytest
 
-OPTIONAL = ("torch", "faultpath_quadrotor", "faultpath_paper", "ray", "playwright")
+OPTIONAL = (
+    "torch",
+    "faultpath_quadrotor",
+    "faultpath_paper",
+    "ray",
+    "playwright",
+    "grimp",
+    "jsonschema",
+    "pyperf",
+    "hatchling",
+)
+REPORTED = re.compile(r"(?:No module named|needs the package|'lacks',) '(\w+)")
+"""A missing package in the output of a process, which a failed assertion shows."""
 QUADROTOR = re.compile(r"quadrotor\b(?!-)|\b(reproduce|train)\b")
-"""What a test that asks for the quadrotor says in its code or its parameters: where commands and
-processes name it, no import does."""
+"""Names by which a test's code or parameters use the quadrotor in a command, without an import."""
 
 
 class EngineAlone:
-    """The plugin behind `--engine-alone`."""
+    """Plugin that skips these tests."""
 
     def __init__(self) -> None:
         self.missing = [name for name in OPTIONAL if find_spec(name) is None]
 
     def _imported(self, error: BaseException | None) -> str | None:
-        """Return the missing package that an error comes of."""
+        """Return the missing package that caused an error."""
         while error is not None:
             if isinstance(error, ModuleNotFoundError):
                 top = (error.name or "").partition(".")[0]
                 return top if top in self.missing else None
+            if (named := REPORTED.search(str(error))) and named[1] in self.missing:
+                return named[1]
             error = error.__cause__ or error.__context__
         return None
 
@@ -43,13 +57,13 @@ class EngineAlone:
         return report
 
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
-        """Skip the tests that ask for the quadrotor by its name or its verbs."""
+        """Skip tests that use the quadrotor by its name or its commands."""
         if "faultpath_quadrotor" not in self.missing:
             return
         for item in items:
             case = getattr(item, "callspec", None)
             source = inspect.getsource(getattr(item, "function", type(item)))
-            source = source[source.find("def ") :]  # the cases of others stand above it
+            source = source[source.find("def ") :]  # without decorators, which list all cases
             source += (
                 "" if case is None else f"\n{case.id} {list(map(_shown, case.params.values()))}"
             )
@@ -63,7 +77,7 @@ class EngineAlone:
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_call(self) -> Generator[None, Any, Any]:
-        """Skip a test that imports a missing package as it runs."""
+        """Skip a test that needs a missing package as it runs, in this process or another."""
         return (yield from self._skipping())
 
     def _skipping(self) -> Generator[None, Any, Any]:

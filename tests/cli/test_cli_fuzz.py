@@ -92,7 +92,8 @@ def test_junk_in_the_place_of_a_word(verb: str, fuzz_seed: int) -> None:
     for _ in range(12):
         line, junk = [*verb.split(), *RIGHT[verb]], rng.choice(JUNK)
         if rng.random() < 0.3 or not OPTIONS[verb]:
-            line[len(verb.split())] = junk
+            at = len(verb.split())
+            line[at : at + 1] = [junk]  # also where the verb takes no argument
         else:
             option = rng.choice(OPTIONS[verb])
             if option in line:

@@ -5,6 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 from golden_cases import AUDITS, HERE, JUDGED, MAPS, NUMBERS, PAPER, cases
 
 STORED = json.loads(NUMBERS.read_text())
@@ -31,6 +32,7 @@ def test_the_cases_hold_what_stored_runs_lack() -> None:
     assert kinds >= {"interval", "empty", "whole"}
 
 
+@pytest.mark.slow
 def test_numbers_are_the_stored_ones_to_the_bit(tmp_path: Path) -> None:
     """In a process of its own: which instructions libraries use is settled when it starts."""
     program, target = HERE / "golden_cases.py", tmp_path / "numbers.json"

@@ -179,7 +179,7 @@ def test_at_most_18_functions_hand_on_what_they_got_between_command_and_table(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """On the calls from the command to a tap, to a computed effect, and to its row in the page."""
-    ends = {Corruption.act.__code__, success_effect.__code__, effect_rows.__code__}
+    ends = {Corruption.apply.__code__, success_effect.__code__, effect_rows.__code__}
     stacks: dict[CodeType, list[tuple[CodeType, set[int]]]] = {}
 
     def observe(frame: FrameType, event: str, result: Any) -> None:

@@ -50,7 +50,11 @@ def test_what_is_on_offer_is_what_there_is():
         assert "trim" in models.predictor(name, None).reads
     for name in choices.RECONSTRUCTIONS:
         assert models.reconstruction(name, None).reads
-    trusts = [models.estimator(name).trust for name in choices.ESTIMATORS]
+    for name in choices.ESTIMATORS:
+        assert models.estimator(name).reads
+    with pytest.raises(KeyError):  # a name without an estimator, which is not the plain filter
+        models.estimator("wind")
+    trusts = [models.estimator(f"eskf{rest}").trust for rest in ("", "-no-bias", "-cautious")]
     assert [(trust.biases, trust.doubt) for trust in trusts] == [(True, 1), (False, 1), (True, 3)]
     assert tuple(options.PLANNERS) == choices.PLANNERS
     for name, kind in options.PLANNERS.items():

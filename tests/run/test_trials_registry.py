@@ -88,10 +88,11 @@ def _systems(tmp_path: Path, *names: str) -> list[Path]:
 
 
 @pytest.fixture
-def own_modules(monkeypatch):
+def own_modules(monkeypatch, tmp_path_factory):
     """Leave neither modules nor places to look for them to other tests."""
-    # Commands that other tests ran in this process left the folders of their systems.
-    monkeypatch.setattr(sys, "path", [each for each in sys.path if "/pytest-of-" not in each])
+    # Fixtures with a wider scope leave the folders of their systems on the path.
+    others = str(tmp_path_factory.getbasetemp())
+    monkeypatch.setattr(sys, "path", [path for path in sys.path if not path.startswith(others)])
     before = dict(sys.modules)
     yield
     for name in set(sys.modules) - set(before):

@@ -126,8 +126,9 @@ def clearance_model(device: torch.device = CPU) -> ClearanceModel:
 
 
 def estimator(name: str, fixes: Fixes = Fixes.OPTICAL, device: torch.device = CPU) -> Estimator:
-    """Return an estimator of `choices.ESTIMATORS`."""
-    biases, doubt = name != "eskf-no-bias", 3.0 if name == "eskf-cautious" else 1.0
+    """Return an estimator of `choices.ESTIMATORS`; `KeyError` for any other name."""
+    settings = {"eskf": (True, 1.0), "eskf-no-bias": (False, 1.0), "eskf-cautious": (True, 3.0)}
+    biases, doubt = settings[name]
     return ErrorStateFilter(Trust(sensors(fixes), biases, doubt), device)
 
 

@@ -80,14 +80,14 @@ def match_device(host: HostArray, reading: Array, dtype: Any = None) -> Array:
     """
     if isinstance(reading, np.ndarray):
         return host if dtype is None else host.astype(dtype, copy=False)
-    return _moved(namespace(reading).asarray(host, dtype=dtype), _COMPAT.device(reading))
+    return _to_device(namespace(reading).asarray(host, dtype=dtype), _COMPAT.device(reading))
 
 
 _PINNING = {"cuda"}
 """Devices whose copies are asynchronous only from pinned memory."""
 
 
-def _moved(array: Array, device: Any) -> Array:
+def _to_device(array: Array, device: Any) -> Array:
     if not _is_torch(array):
         return _COMPAT.to_device(array, device)
     if device.type in _PINNING:
@@ -118,7 +118,7 @@ def like(host: HostArray, reading: Array) -> Array:
 
 @lru_cache(maxsize=1024)
 def _constant_array(value: Any, xp: Any, dtype: Any, device: Any) -> Array:
-    return _moved(xp.asarray(value, dtype=dtype), device)
+    return _to_device(xp.asarray(value, dtype=dtype), device)
 
 
 def constant(value: Constant, reading: Array) -> Any:

@@ -9,7 +9,7 @@ from typing_extensions import override
 from faultpath.core.text import printable, shortened
 
 _LINE, _CELL = 160, 80
-"""Letters of a line and of a cell."""
+"""Characters of a line and of a field."""
 
 
 class Frozen(BaseModel):

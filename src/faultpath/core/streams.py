@@ -50,7 +50,7 @@ class _Key(ISpawnableSeedSequence):
 
     @override
     def generate_state(self, n_words: int, dtype: Any = np.uint32) -> np.ndarray:
-        """Return the key, in the form in which Philox asks for it."""
+        """Return the key as Philox takes it."""
         del n_words, dtype
         return words(self._key)
 

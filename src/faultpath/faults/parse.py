@@ -83,7 +83,7 @@ def _timing(options: Mapping[str, str], dt_s: float) -> tuple[dict[str, Any], di
         if plain not in _WINDOW:
             rest[key] = text
             continue
-        field, least = _WINDOW[plain]
+        field, minimum = _WINDOW[plain]
         if field in window:
             raise UserError(f"'{plain}' is given in steps and in seconds; drop one")
         unit, detail, length = "control steps", "", 1.0
@@ -91,9 +91,9 @@ def _timing(options: Mapping[str, str], dt_s: float) -> tuple[dict[str, Any], di
             unit, detail, length = "seconds", f" of {dt_s:g} s each", dt_s
         value = number_of(key, text, unit) / length
         steps = round(value) if abs(value) < 1e9 else -1
-        if steps < least or abs(value - steps) > 1e-6 * max(1.0, abs(value)):
+        if steps < minimum or abs(value - steps) > 1e-6 * max(1.0, abs(value)):
             raise UserError(
-                f"{key}={text} is not a whole number of steps{detail}, at least {least}"
+                f"{key}={text} is not a whole number of steps{detail}, at least {minimum}"
             )
         window[field] = steps
     if "recovery_steps" in window and "duration_steps" not in window:
@@ -141,9 +141,11 @@ def _of_kind(
 ) -> tuple[Fault, ...]:
     channels = groups(interface) | {channel.name: (channel.name,) for channel in interface.channels}
     if part.name not in channels:
-        fed = [channel.name for channel in interface.channels if part.name in channel.sources]
-        if fed:
-            raise UserError(f"modules read '{part.name}' as '{listed(fed)}'; write {fed[0]}:{kind}")
+        reading = [channel.name for channel in interface.channels if part.name in channel.sources]
+        if reading:
+            raise UserError(
+                f"modules read '{part.name}' as '{listed(reading)}'; write {reading[0]}:{kind}"
+            )
         if any(source.name == part.name for source in interface.sources):
             read = listed(channel.name for channel in interface.channels)
             raise UserError(f"no module reads '{part.name}'; they read: {read}")

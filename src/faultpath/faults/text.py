@@ -25,7 +25,7 @@ from faultpath.core.text import number_in
 _NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _SIZE = re.compile(rf"{_NUMBER}(?:/{_NUMBER})*")
 _RANGE = re.compile(rf"({_NUMBER})\.\.({_NUMBER})/([0-9]+)")
-_MOST = 99
+_MOST_SIZES = 99
 """Sizes of one range; each is an audit."""
 
 
@@ -84,7 +84,7 @@ class FaultText:
             items.append(head)
         what, has_size, size = items[0].partition("=")
         name, has_kind, kind = what.partition(":")
-        sizes = [*_spread(size)] if has_size else []
+        sizes = [*_sizes_in(size)] if has_size else []
         options: dict[str, str] = {}
         for item in items[1:]:
             key, equals, value = item.partition("=")
@@ -94,7 +94,7 @@ class FaultText:
                         f"{item} is a further size, and there is no first: write "
                         "CHANNEL:KIND=SIZE,SIZE"
                     )
-                sizes += _spread(item)
+                sizes += _sizes_in(item)
                 continue
             if key in options:
                 raise UserError(f"option '{key}' appears twice; drop one")
@@ -157,7 +157,7 @@ def number_of(key: str, text: str, what: str = "a number") -> float:
         raise UserError(f"'{key}' needs {needs}, not '{text}'") from None
 
 
-def _spread(item: str) -> tuple[str, ...]:
+def _sizes_in(item: str) -> tuple[str, ...]:
     if item.strip()[:1] in ("[", "("):
         raise UserError("several numbers are written with '/' and without brackets, as in 0.01/0")
     match = _RANGE.fullmatch(item)
@@ -168,7 +168,7 @@ def _spread(item: str) -> tuple[str, ...]:
             )
         return (item,)
     low, high, count = match.groups()
-    if len(count) > len(str(_MOST)) or not 2 <= int(count) <= _MOST:
-        raise UserError(f"it asks for {count} sizes: a range takes 2 to {_MOST}")
+    if len(count) > len(str(_MOST_SIZES)) or not 2 <= int(count) <= _MOST_SIZES:
+        raise UserError(f"it asks for {count} sizes: a range takes 2 to {_MOST_SIZES}")
     first, last, steps = number_of("from", low), number_of("to", high), int(count) - 1
     return tuple(f"{(first * (steps - i) + last * i) / steps + 0.0:.10g}" for i in range(steps + 1))

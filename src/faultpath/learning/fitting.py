@@ -31,7 +31,7 @@ from faultpath.learning.model_card import (
     weights_sha256,
 )
 from faultpath.learning.repair import Repair, parsed_by_cause, withheld_faults
-from faultpath.learning.windows import VALIDATION, Windows, delivered, named
+from faultpath.learning.windows import VALIDATION, Windows, delivered, targets_by_name
 from faultpath.loop import TapCount, added
 
 if TYPE_CHECKING:
@@ -201,7 +201,7 @@ class _WindowTask(FitTask):
         self._withheld = withheld_faults(repairs)
         read = {port.channel for port in data.ports}
         self._readings = {name: tensor(v) for name, v in data.readings.items() if name in read}
-        self._targets = {name: tensor(v) for name, v in named(self.host_targets).items()}
+        self._targets = {name: tensor(v) for name, v in targets_by_name(self.host_targets).items()}
 
     @override
     def begin_epoch(self, epoch: int) -> None:
@@ -231,7 +231,7 @@ class _WindowTask(FitTask):
             reads=tuple(f"{port.channel} -> {reader}" for port, reader in self._data.ports.items()),
             architecture=Architecture.of(net),
             parameters=parameter_count(net),
-            data=self._data.digested(self.host_targets, self.training),
+            data=self._data.digests(self.host_targets, self.training),
             loss=_name_of(self._loss),
             schedule=self.schedule,
             initial_sha256=self.initial_sha256,

@@ -150,17 +150,19 @@ def errors(
                 "must not be negative, the second is from -1 to 1"
             )
         if persistence == "step":
-            law: Bias | Noise = Noise(std=std, relative=relative)
+            intervention: Bias | Noise = Noise(std=std, relative=relative)
         elif persistence == "window":
-            law = Bias(std=std, relative=relative)
+            intervention = Bias(std=std, relative=relative)
         elif isinstance(persistence, str) or not persistence > 0:
             raise UserError(
                 f"errors: a persistence of {persistence!r} is none: give 'window', 'step' or "
                 "seconds"
             )
         else:
-            law = Bias(std=std, relative=relative, time_constant_s=persistence)
-        faults.append(Fault(channel=channel, intervention=law, cause=cause, loading=loading))
+            intervention = Bias(std=std, relative=relative, time_constant_s=persistence)
+        faults.append(
+            Fault(channel=channel, intervention=intervention, cause=cause, loading=loading)
+        )
     if not faults:
         raise UserError("errors: magnitude names no channel")
     return tuple(faults)

@@ -64,7 +64,9 @@ class Windows:
         object.__setattr__(self, "ids", ids)
         object.__setattr__(self, "episodes", tuple(self.episodes) or ids)
         parts: dict[str, Any] = {f"readings of '{name}'": v for name, v in readings.items()}
-        parts |= {f"targets '{name}'": value for name, value in named(self.targets).items()}
+        parts |= {
+            f"targets '{name}'": value for name, value in targets_by_name(self.targets).items()
+        }
         parts |= {"ids": ids, "episodes": self.episodes}
         for what, value in parts.items():
             if len(value) != n:
@@ -165,13 +167,15 @@ class Windows:
             )
         return self.readings[channels[0]]
 
-    def digested(self, targets: Targets, training: HostArray) -> Data:
+    def digests(self, targets: Targets, training: HostArray) -> Data:
         """Return digests of the data, with these windows on the training side."""
         return Data(
             readings_sha256={
-                name: sha256_of(self.readings[name]) for name in sorted(self.readings)
+                name: array_sha256(self.readings[name]) for name in sorted(self.readings)
             },
-            targets_sha256={name: sha256_of(value) for name, value in named(targets).items()},
+            targets_sha256={
+                name: array_sha256(value) for name, value in targets_by_name(targets).items()
+            },
             ids_sha256=self.names_sha256(np.arange(len(self))),
             windows=len(self),
             steps=self.steps,
@@ -256,13 +260,13 @@ def window_taps(
     )
 
 
-def sha256_of(array: HostArray) -> str:
+def array_sha256(array: HostArray) -> str:
     """Return a digest of an array's type, shape and bits."""
     head = f"{array.dtype.str}{array.shape}".encode()
     return sha256(head + np.ascontiguousarray(array).tobytes()).hexdigest()
 
 
-def named(targets: Targets | None) -> dict[str, HostArray]:
+def targets_by_name(targets: Targets | None) -> dict[str, HostArray]:
     """Return targets by name; a single one is called `target`."""
     if isinstance(targets, Mapping):
         return {name: np.asarray(value) for name, value in targets.items()}

@@ -24,7 +24,7 @@ class Corruption:
         self._memories: dict[int, Memory] = {}
         """By request within a step; a reading that is no query counts as request 0."""
 
-    def act(self, reading: Array, step: int, request: int = 0) -> tuple[Array, bool]:
+    def apply(self, reading: Array, step: int, request: int = 0) -> tuple[Array, bool]:
         """Return the value, and whether the fault is in force.
 
         Raises `UserError` where the intervention cannot act on such a reading.
@@ -47,9 +47,9 @@ class Corruption:
                 # Held since before the source had its type, as `before=0.0` of whole numbers is.
                 value = like(to_numpy(value), reading)
         except Inexact:
-            raise self._turns(reading, "fractions") from None
+            raise self._changes_type(reading, "fractions") from None
         if value is not reading and (value.dtype != reading.dtype or value.shape != reading.shape):
-            raise self._turns(reading, f"{value.dtype} {list(value.shape)}")
+            raise self._changes_type(reading, f"{value.dtype} {list(value.shape)}")
         weight = fault.weight(step)
         if weight in (0.0, 1.0):
             return (value, True) if weight else (reading, False)
@@ -59,7 +59,7 @@ class Corruption:
             )
         return reading + (value - reading) * weight, True
 
-    def _turns(self, reading: Array, value: str) -> UserError:
+    def _changes_type(self, reading: Array, value: str) -> UserError:
         """Return the error for a value that is not like the reading."""
         advice = "choose one that keeps them"
         if not fractional(reading):

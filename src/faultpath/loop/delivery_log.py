@@ -1,4 +1,4 @@
-"""The delivery log: which reader got what at which step, faulted or altered or not."""
+"""The delivery log: at how many steps each reader got a faulted or altered value."""
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
@@ -61,7 +61,7 @@ class Guard:
         self._original: Array = None
         self._written: Any = False
 
-    def hand_out(self, value: Array) -> Array:
+    def copy_for_reader(self, value: Array) -> Array:
         """Return a copy for the reader, and check the one it had before."""
         self._compare()
         self._copy, self._original = copy(value), copy(value)

@@ -144,7 +144,7 @@ class _Execution:
             self._previous, self._current = self._current, {}
             sensed = plant.sense(state)
             self._sample(plant, sensed, step, plant.senses)
-            truths = {name: _returned(plant, sensed, name, step) for name in plant.shows}
+            truths = {name: _output(plant, sensed, name, step) for name in plant.shows}
             for index, module in enumerate(modules):
                 inputs = self._inputs(module, step, truths, running)
                 outputs, memories[index] = module.step(inputs, memories[index])
@@ -159,7 +159,7 @@ class _Execution:
         """Sample those of a part's sources that have a reader."""
         for name in names:
             if name in self._sources:
-                value = _returned(part, outputs, name, step)
+                value = _output(part, outputs, name, step)
                 self._current[name] = self._sources[name].read(value, step)
 
     def _inputs(self, part: Part, step: int, truths: Mapping[str, Any], running: Array) -> Inputs:
@@ -202,7 +202,7 @@ def _ports_of(part: Part, graph: Graph) -> Iterator[tuple[Port, str, str, bool, 
         yield port, part.reader(port), source, port not in part.reads, port in part.at_read
 
 
-def _returned(part: Part, outputs: Outputs, name: str, step: int) -> Any:
+def _output(part: Part, outputs: Outputs, name: str, step: int) -> Any:
     """Return an entry of a part's outputs; `SystemMistake` where it is missing."""
     if name not in outputs:
         verb = "writes source"

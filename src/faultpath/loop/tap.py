@@ -218,24 +218,24 @@ def wire(
 
 
 class DeliveryListener:
-    """Is told what passes the taps of one run; a subclass overrides the methods it needs.
+    """Listener to the deliveries of one run; a subclass overrides the methods it needs.
 
     It gets the arrays of the run itself, so it copies what it keeps and writes to none.
     """
 
     def delivered(self, tap: Tap, reading: Reading, step: int, got: Any) -> None:
-        """Take note of the value that a reader got; for a query, the function that answers."""
+        """Handle the value that a reader got; for a query, the function that answers."""
 
     def answered(
         self, tap: Tap, query: Query, step: int, request: Any, answer: Any, got: Any
     ) -> None:
-        """Take note of a query's answer to a request, and of the answer that the reader got."""
+        """Handle a query's answer to a request, and the answer that the reader got."""
 
     def faulted(self, step: int, in_force: Any) -> None:
-        """Take note of the scenes in which a fault was in force at a tap: a bool, or bool `[B]`."""
+        """Handle the scenes in which a fault was in force at a tap: a bool, or bool `[B]`."""
 
 
-def refusal(
+def delivery_error(
     interface: Interface, tap: Tap | None, channel: str, reader: str, reading: Any, step: int
 ) -> TapError:
     """Return the error for a delivery that the interface or the variant does not allow."""

@@ -24,11 +24,11 @@ from faultpath.loop.reading import (
     TapError,
     WrittenTo,
 )
-from faultpath.loop.tap import DeliveryListener, Tap, refusal, wire
+from faultpath.loop.tap import DeliveryListener, Tap, delivery_error, wire
 from faultpath.loop.trajectory import Trajectories
 
 UNREAD = -1
-"""In place of a scene that reads: none does."""
+"""Scene index of a delivery that no scene reads."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +54,7 @@ class Taps:
         privileged: Privileged sources that this treatment may read.
         guard: Give every reader a copy of its own, so that `verify` can name a reader that wrote
             into it. NumPy readings cannot be written to in any case.
-        observer: Is told of every delivery.
+        observer: Listener that every delivery is reported to.
 
     Raises:
         UserError: A name is unknown, or a fault names a reader that the variant does not have.
@@ -129,7 +129,7 @@ class Taps:
             NotFinite: The first reading at this tap is not finite.
         """
         tap = self._taps.get((channel, reader))
-        # One test for all, since every delivery passes here; `refusal` finds out which one failed.
+        # One test for speed, at every delivery; `delivery_error` says which condition failed.
         if (
             tap is None
             or not isinstance(cast("Any", reading), Reading)
@@ -137,7 +137,7 @@ class Taps:
             or not tap.permitted
             or not 0 <= step >= reading.step
         ):
-            raise refusal(self._interface, tap, channel, reader, reading, step)
+            raise delivery_error(self._interface, tap, channel, reader, reading, step)
         value = reading.value
         if scene == UNREAD and not tap.corruptions:
             return None
@@ -159,7 +159,7 @@ class Taps:
                         self._shared_value, self._shared_view = value, read_only(value)
                     value = self._shared_view
                 elif tap.guard is not None:
-                    value = tap.guard.hand_out(value)
+                    value = tap.guard.copy_for_reader(value)
                 tap.cached = value
         elif value is not tap.value:
             tap.check_same(value, step)
@@ -207,7 +207,7 @@ class Taps:
                 value = self._corrupted(tap, value, step, number)
                 self._count(tap, step)
             if tap.guard is not None:
-                value = tap.guard.hand_out(value)
+                value = tap.guard.copy_for_reader(value)
             if value is not clean:
                 delivered = query.changed(answer, value)
         if self._observer is not None:
@@ -215,12 +215,12 @@ class Taps:
         return delivered
 
     def _corrupted(self, tap: Tap, reading: Array, step: int, request: int = 0) -> Array:
-        """Return the value after all faults, and note in the tap what is to be counted of it."""
+        """Return the value after all faults, and keep in the tap which scenes to count."""
         tap.check_shape(reading)
         value, faulted = reading, False
         marks: list[tuple[StepCounter, Any]] = []
         for corruption in tap.corruptions:
-            value, in_force = corruption.act(value, step, request)
+            value, in_force = corruption.apply(value, step, request)
             in_force = self._where_active(in_force, reading)
             marks.append((corruption.in_force, in_force))
             faulted = in_force if faulted is False else faulted | in_force

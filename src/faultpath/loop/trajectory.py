@@ -27,11 +27,11 @@ class Trajectories:
         """Values, and which scenes ran then: `[B, ...]` and bool `[B]`."""
         self._size = 0
         self._mask: Array = None
-        self._kept_mask: Array = None
+        self._mask_copy: Array = None
 
     def set_running(self, mask: Array | None) -> None:
         """Set which scenes run from now on, bool `[B]`; `None`: all."""
-        self._mask, self._kept_mask = mask, None
+        self._mask, self._mask_copy = mask, None
 
     def note(self, value: Any, only: HostArray | None = None) -> None:
         """Add a value that a reader got in all scenes, or in `only` some, bool `[B]`.
@@ -42,11 +42,11 @@ class Trajectories:
         scenes = len(self._hashes)
         if not is_array(value) or value.shape[:1] != (scenes,) or 0 in value.shape:
             return
-        if self._kept_mask is None and self._mask is not None:
-            self._kept_mask = copy(self._mask)  # the plant may reuse its mask later
+        if self._mask_copy is None and self._mask is not None:
+            self._mask_copy = copy(self._mask)  # the plant may reuse its mask later
         # Without its autograd graph, which would keep all steps in memory.
         value = value.detach() if hasattr(value, "detach") else value
-        mask = self._kept_mask
+        mask = self._mask_copy
         if only is not None:
             mask = only if mask is None else only & to_numpy(mask)
         self._waiting.append((copy(value), mask))

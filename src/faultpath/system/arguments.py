@@ -48,13 +48,13 @@ def modules_of(variant: str, modules: Any) -> Sequence[Module]:
             continue
         kind = f"the function {module.__name__}" if hasattr(module, "__name__") else shown(module)
         raise SystemMistake(
-            f"{where} holds {kind}, which is no module: write @writes('what it writes') above its "
-            "def"
+            f"{where} holds {kind}, which is not a module: write @writes('what it writes') above "
+            "its def"
         )
     return cast("Sequence[Module]", modules)
 
 
-def odd_name(module: Module) -> str | None:
+def invalid_name(module: Module) -> str | None:
     """Return a name of a module, its places or channels that an interface cannot have."""
     names = (n for port in module.ports for n in (port.channel, *module.reader(port).split(".")))
     return next((name for name in names if not re.fullmatch(r"[a-z][a-z0-9_]*", name)), None)
@@ -113,26 +113,26 @@ def check_episode(steps: Any, dt_s: Any, succeeded: Any, metrics: Any) -> None:
 
 
 def check_call(name: str, function: Any, arguments: str) -> None:
-    """Raise `SystemMistake` for what cannot be called with these arguments, named in a text."""
+    """Raise `SystemMistake` unless a function takes these arguments, comma-separated names."""
     if not callable(function):
         raise SystemMistake(f"{name} is {shown(function)}: give a function")
     names = arguments.split(", ")
     try:
-        takes = signature(function)
-    except ValueError:  # such as that of `dict`
+        accepted = signature(function)
+    except ValueError:  # built-ins such as `dict` have none
         return
     try:
-        takes.bind(*names)
+        accepted.bind(*names)
     except TypeError:
         raise mistake_in(
             function,
-            f"`{name}` takes {takes}, but it is called as {name}({arguments}): give it "
+            f"`{name}` takes {accepted}, but it is called as {name}({arguments}): give it "
             f"{counted(len(names), 'argument')}",
         ) from None
 
 
-def truth_of(name: str, function: Callable[..., Any], value: Any, of: str) -> bool:
-    """Return what a function says; `SystemMistake` where that is neither true nor false."""
+def boolean_of(name: str, function: Callable[..., Any], value: Any, of: str) -> bool:
+    """Return a function's result; `SystemMistake` where it is neither true nor false."""
     if type(value) not in (bool, np.bool_):
         raise mistake_in(
             function, f"`{name}` returned {shown(value)} of {of}: it must return true or false"
@@ -141,7 +141,7 @@ def truth_of(name: str, function: Callable[..., Any], value: Any, of: str) -> bo
 
 
 def number_of(name: str, function: Callable[..., Any], value: Any) -> float:
-    """Return what a metric is of an episode; `SystemMistake` where that is no number."""
+    """Return the value of a metric; `SystemMistake` where it is not a number."""
     try:
         return float(value)
     except (TypeError, ValueError):

@@ -26,7 +26,7 @@ _COLUMNS = frozenset(
 
 
 def library_of(system: System, name: str) -> Library:
-    """Return a library of a system; `SystemMistake` if it is none, `UserError` for an unknown name.
+    """Return a library of a system; `SystemMistake` for another object, `UserError` for a name.
 
     A system may return its only library for each of the default names.
     """
@@ -44,12 +44,12 @@ def library_of(system: System, name: str) -> Library:
 
 
 def paths_of(system: System, attribute: str) -> tuple[str | PathLike[str], ...]:
-    """Return paths that the system names; `SystemMistake` if they are none."""
+    """Return the paths in an attribute of the system; `SystemMistake` for anything else."""
     paths = _declared(system, attribute, f"system {system.name!r}")
     if not isinstance(paths, (str, bytes, PathLike)) and isinstance(paths, Iterable):
-        several = tuple(cast("Iterable[Any]", paths))
-        if all(isinstance(path, (str, PathLike)) for path in several):
-            return several
+        listed = tuple(cast("Iterable[Any]", paths))
+        if all(isinstance(path, (str, PathLike)) for path in listed):
+            return listed
     raise SystemMistake(
         f"system {system.name!r}: `{attribute}` is {shown(paths)}: give paths, as a tuple"
     )
@@ -59,10 +59,10 @@ def _positive(number: Any) -> bool:
     return isinstance(number, Real) and 0 < float(number) < float("inf")
 
 
-def _mapping(is_valid: Callable[[Any, Any], bool], least: int = 0) -> Callable[[Any], bool]:
+def _mapping(is_valid: Callable[[Any, Any], bool], minimum: int = 0) -> Callable[[Any], bool]:
     return lambda mapping: (
         isinstance(mapping, Mapping)
-        and len(cast("Any", mapping)) >= least
+        and len(cast("Any", mapping)) >= minimum
         and all(is_valid(key, value) for key, value in cast("Mapping[Any, Any]", mapping).items())
     )
 

@@ -16,8 +16,8 @@ from faultpath.interface import Interface
 from faultpath.loop import Loop, Module, graph, interface_of
 from faultpath.system.arguments import (
     channels_of,
+    invalid_name,
     modules_of,
-    odd_name,
     seeds_of,
     shown,
     units_of,
@@ -38,7 +38,7 @@ SCENES: Mapping[str, Sequence[int]] = {
 }
 """Default libraries of a system, and the seeds of their scenes."""
 _MISSPELT = 0.85
-"""Likeness from which on a name is taken for another one misspelt, though that stands there too."""
+"""Similarity from which a name counts as a misspelling of a source that has a unit of its own."""
 
 
 @dataclass(frozen=True)
@@ -181,10 +181,10 @@ class ComposedSystem(LoopSystem):
             port.channel for part in (*modules, plant) for port in sorted(part.ports)
         )
         feeds = {channel: alternatives.get(channel, (channel,)) for channel in read}
-        if idle := alternatives.keys() - read:
+        if unused := alternatives.keys() - read:
             raise SystemMistake(
                 f"system '{self.name}': no module reads what channels names: "
-                f"{unknown('channel', min(idle), read)}"
+                f"{unknown('channel', min(unused), read)}"
             )
         # Until a first step shows a module's output, it has the shape of the source it replaces.
         for fed in feeds.values():
@@ -196,21 +196,21 @@ class ComposedSystem(LoopSystem):
         computed = {name for module in modules if module.ports for name in module.writes}
         known |= dict.fromkeys(set(written) - computed, "commanded")
         for module in modules:
-            if odd := odd_name(module):
+            if invalid := invalid_name(module):
                 raise self._mistake(
                     module,
-                    f"'{odd}' cannot name a module, a place or a channel: use small letters, "
+                    f"'{invalid}' cannot name a module, a place or a channel: use small letters, "
                     "digits and '_', a letter first; `name=` of @writes names a module",
                 )
             for port in sorted(module.ports):
-                there = list(dict.fromkeys((*plant.senses, *plant.facts, *written)))
-                if not {*feeds[port.channel]} & {*there}:
-                    raise self._unread(module, port.channel, there)
+                available = list(dict.fromkeys((*plant.senses, *plant.facts, *written)))
+                if not {*feeds[port.channel]} & {*available}:
+                    raise self._unknown_source(module, port.channel, available)
             reads = {name for port in module.ports for name in feeds[port.channel]}
-            if own := (reads & {*module.writes}) - {*known}:
+            if looped := (reads & {*module.writes}) - {*known}:
                 raise self._mistake(
                     module,
-                    f"it reads '{min(own)}', which it writes itself: keep the value of the step "
+                    f"it reads '{min(looped)}', which it writes itself: keep the value of the step "
                     "before in `memory`",
                 )
         if plant.action in feeds and not {*feeds[plant.action]} & {*written}:
@@ -248,8 +248,8 @@ class ComposedSystem(LoopSystem):
         mistake.location = module.location if isinstance(module, FunctionModule) else ""
         return mistake
 
-    def _unread(self, module: Module, name: str, sources: Sequence[str]) -> SystemMistake:
-        """Return what is wrong with an argument that is no source."""
+    def _unknown_source(self, module: Module, name: str, sources: Sequence[str]) -> SystemMistake:
+        """Return the error for an argument that is not a source."""
         defaults = module.defaults if isinstance(module, FunctionModule) else {}
         if name not in defaults:
             return self._mistake(module, unknown("source", name, sources))
@@ -259,8 +259,10 @@ class ComposedSystem(LoopSystem):
         )
 
     def _check_units(self, units: Mapping[str, Any], sources: Sequence[str]) -> None:
-        """Refuse sources without a unit, and names that seem misspelt; others may be of sources
-        that another variant has."""
+        """Refuse sources without a unit, and names that seem misspelt.
+
+        Other names without a source may belong to another variant.
+        """
         spare = [name for name in units if name not in sources]
         for source in sources:
             cutoff = _MISSPELT if source in units else 0.6

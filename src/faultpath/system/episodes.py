@@ -13,7 +13,7 @@ from faultpath.core.error_source import mistake_in
 from faultpath.core.errors import SystemMistake
 from faultpath.core.text import listed, unknown
 from faultpath.loop import Batch, Inputs, Plant, Port, Progress
-from faultpath.system.arguments import check_episode, number_of, shown, truth_of
+from faultpath.system.arguments import boolean_of, check_episode, number_of, shown
 from faultpath.system.observed import Selector, select
 from faultpath.system.outcome import Metric
 
@@ -280,7 +280,7 @@ class EpisodePlant(Plant):
             rewards = np.array([row[i] for row in state.rewards])
             episode = Episode(signals, rewards, bool(terminated[i]), info[i], self.dt_s)
             success = self._succeeded(episode)
-            succeeded[i] = truth_of("succeeded", self._succeeded, success, "an episode")
+            succeeded[i] = boolean_of("succeeded", self._succeeded, success, "an episode")
             for name, measure in self.metrics.items():
                 state.metrics[name][i] = number_of(name, measure.of, measure.of(episode))
             crashed[i] = terminated[i] and not succeeded[i]

@@ -9,7 +9,7 @@ from typing_extensions import override
 from faultpath.core.arrays import HostArray
 from faultpath.core.error_source import mistake_in
 from faultpath.core.streams import generator
-from faultpath.system.arguments import check_call, truth_of
+from faultpath.system.arguments import boolean_of, check_call
 from faultpath.system.episodes import Episode, EpisodePlant, Measure, SceneInstance, Selector, Show
 from faultpath.system.observed import hashed
 
@@ -77,7 +77,7 @@ class FunctionPlant(EpisodePlant):
             draws = generator("plant/step", scene, seed, step)
             state = _returned("step", self._step, state, action, draws)
             over = self._over
-            ends = over is not None and truth_of(
+            ends = over is not None and boolean_of(
                 "over", over, over(state), "the state of one scene"
             )
             return state, 0.0, ends, False, {}

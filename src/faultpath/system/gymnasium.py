@@ -101,9 +101,9 @@ class GymnasiumPlant(EpisodePlant):
         if setup is not None and observation is None:
             _check_observation(sample, setup)
         sample.close()
-        for what, value in {"steps": steps, "dt_s": dt_s}.items():
+        for name, value in {"steps": steps, "dt_s": dt_s}.items():
             if value is None:
-                raise SystemMistake(f"GymnasiumPlant: the environment does not say {what}: give it")
+                raise SystemMistake(f"GymnasiumPlant: the environment does not say {name}: give it")
         returned = Measure(Metric(unit="1", better="more"), lambda episode: episode.returned)
         super().__init__(
             observes=observes,

@@ -81,7 +81,7 @@ def stacked(rows: Sequence[Any]) -> Any:
 
 
 def _alike(rows: Sequence[Any]) -> bool:
-    """Return whether `np.array` is equivalent to `np.stack`; it takes a third of the time."""
+    """Return whether `np.array` may replace `np.stack`, which takes three times as long."""
     first = rows[0]
     if type(first) is float:
         return all(type(row) is float for row in rows)

@@ -78,7 +78,7 @@ class Option:
 
 
 class Offered:
-    """In `Annotated`: the values of a wider type that a user may choose, such as three numbers.
+    """Annotation of the values that a user may choose from a wider type, such as three numbers.
 
     With `factories` a user may also name one as `path/to/file.py:factory`.
     """

@@ -11,8 +11,8 @@ import numpy as np
 from faultpath.core.arrays import HostArray
 from faultpath.core.text import listed
 
-_MOST = 100_000
-"""Objects of one part that are visited at most, so that a walk ends."""
+_LARGEST_WALK = 100_000
+"""Largest number of objects of one part that are visited, so that a walk ends."""
 _LEAVES = (str, bytes, bool, int, float, complex, type, ModuleType, type(None), np.generic)
 
 
@@ -101,7 +101,7 @@ class Walk:
         """Copies of numbers, by place."""
         seen: set[int] = set()
         waiting = deque([_Object(root, part, 0)])
-        while waiting and len(seen) < _MOST:
+        while waiting and len(seen) < _LARGEST_WALK:
             node = waiting.popleft()
             value = node.value
             if isinstance(value, float | complex | np.floating):

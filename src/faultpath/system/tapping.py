@@ -25,7 +25,7 @@ class Reads:
 
     def __init__(self, at: str, what: Any, channels: Mapping[str, str]) -> None:
         self.at, self.what = at, what
-        self.kind = _called(what) if _is_called(what) else type(what).__name__
+        self.kind = _callable_name(what) if _is_callable(what) else type(what).__name__
         # Readers are in small letters, which attributes need not be.
         self.ports = {n: Port(channel, f"{at}.{n.lower()}") for n, channel in channels.items()}
         self.own: dict[str, Any] = {}
@@ -111,8 +111,8 @@ def tapped(what: T, *names: str, at: str, **channels: str) -> T:
             f"tapped {kind.__name__}: names nothing to tap: give an attribute, key or argument"
         )
     reads = Reads(at, what, {name: name for name in names} | channels)
-    if _is_called(what):
-        return _collected(reads, _tapped_call(what, reads))
+    if _is_callable(what):
+        return _collect(reads, _tapped_call(what, reads))
     keyed = isinstance(what, dict)
     known = list(cast("dict[Any, Any]", what)) if keyed else dir(what)
     for name in reads.ports:
@@ -141,20 +141,20 @@ def tapped(what: T, *names: str, at: str, **channels: str) -> T:
                 "code, where no stand-in can be: tap the object that holds it, or hand the value "
                 "over as an argument of the module"
             ) from error
-    return _collected(reads, stand_in)
+    return _collect(reads, stand_in)
 
 
-def _collected(reads: Reads, stand_in: Any) -> Any:
+def _collect(reads: Reads, stand_in: Any) -> Any:
     if (collected := _STAND_INS.get()) is not None:
         collected.append(reads)
     return stand_in
 
 
-def _is_called(what: Any) -> bool:
+def _is_callable(what: Any) -> bool:
     return isroutine(what) or isinstance(what, type | partial)
 
 
-def _called(what: Any) -> str:
+def _callable_name(what: Any) -> str:
     """Return the name of a function, method or class in messages."""
     return getattr(what.func if isinstance(what, partial) else what, "__qualname__", "a function")
 

@@ -15,7 +15,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from faultpath.core.errors import UserError
-from faultpath.core.files.opening import LARGEST_TEXT, contents, opened, unlike_file
+from faultpath.core.files.opening import LARGEST_TEXT, contents, opened, special_kind
 
 _PREFIX = ".partial-"
 Say = Callable[[str], None]
@@ -91,7 +91,7 @@ def check_folder(path: Path) -> None:
         with suppress(OSError):
             mode = part.stat().st_mode
             if not stat.S_ISDIR(mode):
-                raise UserError(f"{part} is {unlike_file(mode) or 'a file'}: name a folder.")
+                raise UserError(f"{part} is {special_kind(mode) or 'a file'}: name a folder.")
             return
 
 
@@ -162,7 +162,7 @@ def _target(path: Path, inside: Path | None) -> Path:
         mode = stat.S_IFREG
     except ValueError as error:
         raise OSError(errno.EINVAL, "the path has a null character in it") from error
-    if kind := unlike_file(mode):
+    if kind := special_kind(mode):
         raise OSError(errno.EEXIST, f"it is {kind}, not a file")
     target = Path(os.path.realpath(path))
     if inside is not None and path.is_symlink() and not target.is_relative_to(inside.resolve()):
@@ -185,7 +185,7 @@ def locked(folder: Path, notice: Say) -> Generator[None, None, None]:
             f"cannot write to {folder} ({error.strerror}): choose a folder that you may write to"
         ) from error
     try:
-        if kind := unlike_file(os.fstat(descriptor).st_mode):
+        if kind := special_kind(os.fstat(descriptor).st_mode):
             raise UserError(f"{path} is {kind}, not a file: remove it, or choose another folder")
         try:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)

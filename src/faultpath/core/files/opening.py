@@ -23,7 +23,7 @@ def most_unpacked(packed: int) -> int:
     return min(LARGEST, max(LARGEST_TEXT, 100 * packed))
 
 
-_NO_FILE = (
+_SPECIAL_FILES = (
     (stat.S_ISDIR, "a folder"),
     (stat.S_ISFIFO, "a pipe"),
     (stat.S_ISSOCK, "a socket"),
@@ -48,9 +48,9 @@ def named_path(text: str | Path) -> Path:
     return Path(text)
 
 
-def unlike_file(mode: int) -> str:
+def special_kind(mode: int) -> str:
     """Return what a file mode stands for, such as `a pipe`; empty for a file."""
-    return next((kind for is_kind, kind in _NO_FILE if is_kind(mode)), "")
+    return next((kind for is_kind, kind in _SPECIAL_FILES if is_kind(mode)), "")
 
 
 def opened(path: str | os.PathLike[str], most: int = LARGEST) -> BufferedReader:
@@ -69,7 +69,7 @@ def opened(path: str | os.PathLike[str], most: int = LARGEST) -> BufferedReader:
         raise
     try:
         status = os.fstat(descriptor)
-        if kind := unlike_file(status.st_mode):
+        if kind := special_kind(status.st_mode):
             raise OSError(errno.EINVAL, f"it is {kind}, not a file", path)
         if status.st_size > most:
             raise _too_large(path, most)

@@ -54,7 +54,7 @@ def masked(values: Any) -> Any:
 
 
 @contextmanager
-def _sound() -> Generator[None]:
+def _as_unreadable() -> Generator[None]:
     """Turn any error that a damaged file causes in pyarrow into `Unreadable`."""
     try:
         yield
@@ -64,7 +64,7 @@ def _sound() -> Generator[None]:
         raise Unreadable(str(error)) from error
 
 
-@_sound()
+@_as_unreadable()
 def read_table(data: bytes) -> pa.Table:
     """Return the table of a Parquet file; `Unreadable` for another file or too large a one."""
     for _ in _batches(data):
@@ -81,8 +81,8 @@ def _batches(data: bytes) -> Iterator[pa.RecordBatch]:
     file = pq.ParquetFile(pa.BufferReader(data), pre_buffer=False)
     if len(set(names := file.schema_arrow.names)) < len(names):
         raise Unreadable("two columns have one name")
-    about, most, unpacked = file.metadata, most_unpacked(len(data)), 0
-    groups = (about.row_group(number) for number in range(about.num_row_groups))
+    metadata, most, unpacked = file.metadata, most_unpacked(len(data)), 0
+    groups = (metadata.row_group(number) for number in range(metadata.num_row_groups))
     cells = sum(group.column(n).num_values for group in groups for n in range(group.num_columns))
     least = 16 * cells  # bytes as Python objects
     for batch in file.iter_batches(256, use_threads=False) if least <= most else ():
@@ -102,13 +102,13 @@ def read_rows(data: bytes) -> Iterator[tuple[int, dict[str, Any]]]:
     Columns may be of any types.
     """
     number = 0
-    with _sound():
+    with _as_unreadable():
         for batch in _batches(data):
             for row in batch.to_pylist():
                 yield (number := number + 1), row
 
 
-@_sound()
+@_as_unreadable()
 def decode(
     data: bytes,
     schema: Schema,
