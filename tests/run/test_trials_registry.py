@@ -68,6 +68,7 @@ def test_two_edits_within_a_second_are_two(tmp_path, edited):
         (f"{FILE}:impostor", "returned a object"),
         (f"{FILE}:needy", r"pip install '\.\[torch\]'"),
         (f"{FILE}:", "there is no system"),
+        (str(FILE.with_suffix("")), rf"; did you mean '{FILE}'\? installed: "),
         ("..x:create", "there is no system"),
     ],
 )
