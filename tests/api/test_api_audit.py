@@ -85,6 +85,8 @@ def test_what_is_read_back_is_what_was_held(run):
 def test_a_folder_that_is_none_is_named_and_a_notebook_shows_a_run(run):
     with pytest.raises(faultpath.UserError, match=r"nowhere holds no provenance\.json"):
         faultpath.open_run("nowhere")
+    with pytest.raises(faultpath.UserError, match="3 is no path: give the folder of a finished"):
+        faultpath.open_run(3)
     shown = run._repr_markdown_()
     assert run.headline.partition(" ")[0] in shown
     assert "Won:lost" in shown

@@ -4,6 +4,7 @@ import json
 import re
 import shutil
 from pathlib import Path
+from typing import Any
 
 import pytest
 from cli_runs import faultpath as command
@@ -36,6 +37,7 @@ def test_comparing(toy: Path, tmp_path: Path) -> None:
     [
         (["toy"], "two or more"),
         ("toy", "two or more"),
+        (["toy", 3], "3 is no path: give the folder of a finished run"),
         (["toy", "dock", "./toy"], "given twice"),
         (["toy", "map-toy"], "holds no audit"),
         (["toy", "nowhere"], "nowhere holds no provenance.json"),
@@ -43,7 +45,7 @@ def test_comparing(toy: Path, tmp_path: Path) -> None:
     ids=str,
 )
 def test_what_cannot_be_compared(
-    folders: list[str] | str, sentence: str, monkeypatch: pytest.MonkeyPatch
+    folders: Any, sentence: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(REFERENCE)
     with pytest.raises(UserError, match=re.escape(sentence)):

@@ -37,6 +37,7 @@ from faultpath.report.scan import write_scan
 from faultpath.report.sentences import Words, words
 from faultpath.run.provenance import AGAIN, RunProvenance, unseal
 from faultpath.run.store.tables import encode_outcomes
+from faultpath.system import declared
 
 
 class FinishedRun(ABC):
@@ -181,7 +182,11 @@ def open_run(folder: str | PathLike[str]) -> "Run | MapRun | ScanRun | Any":
     `faultpath.runs` names a file of such a folder, and what reads the folder. Raises `UserError`
     for a folder that holds none of them, or a damaged or changed one.
     """
-    place = Path(folder)
+    try:
+        place = Path(folder)
+    except TypeError:
+        shown = declared.shown(folder)
+        raise UserError(f"{shown} is no path: give the folder of a finished run.") from None
     provenance = read_provenance(place)
     for kind, model in ((MapRun, MapResult), (ScanRun, ScanResult)):
         if kind.files[0] in provenance.files:
