@@ -115,7 +115,7 @@ def in_short(result: AuditResult, effect: Effect | None) -> str:
         at = at or (", but trials failed unevenly" if effect.uneven else "")
         return f"{result.winner(effect.sign)} succeeds more often{at}"
     if effect.unsettled:
-        return "not significant: trials that failed could undo it"
+        return "not significant: failed or missing trials could undo the difference"
     if result.few:
         return "too few scenes"
     p = f" ({adjusted(result, effect)})" if only_alone(effect) else ""
@@ -153,7 +153,9 @@ def change(result: AuditResult, change: Change) -> str:
         )
     between = f"between the effect {alone} and that {shared} ({numbers})"
     if change.unsettled:
-        return f"No change is significant {between}: trials that failed could undo it."
+        return (
+            f"No change is significant {between}: failed or missing trials could undo the one seen."
+        )
     return f"No change is significant {between}."
 
 
