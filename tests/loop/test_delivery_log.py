@@ -117,20 +117,19 @@ def test_a_fault_that_reached_another_is_an_error() -> None:
     taps = make([LATE])
     run(taps)
     log = taps.delivery_log()
-    last = np.array([5, 5])
     with pytest.raises(FaultedElsewhere, match=re.escape("tap mass -> observer.model altered a")):
-        log.check({}, last)
+        log.check({})
     named = {("mass", "observer.model"): [log.at("mass", "observer.model").faults[0].fault]}
-    log.check(named, last)
+    log.check(named)
     early = LATE.model_copy(update={"onset_step": 0})
     both = make([early, LATE])
     run(both)
     with pytest.raises(FaultedElsewhere, match=re.escape("tap mass -> observer.model altered a")):
-        both.delivery_log().check(named, last)
+        both.delivery_log().check(named)
     once = {"mass": {}, "wind": {"steps_altered": np.array([1, 0])}}
     strange = tuple(replace(tap, **once[tap.channel]) for tap in log.taps)
     with pytest.raises(FaultedElsewhere, match=re.escape("tap wind -> predictor.wind altered a")):
-        replace(log, taps=strange).check(named, last)
+        replace(log, taps=strange).check(named)
 
 
 @pytest.mark.parametrize(

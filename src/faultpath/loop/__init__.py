@@ -1,6 +1,6 @@
 """The closed loop, executed: modules declare ports, and every edge between them is a tap."""
 
-from faultpath.loop.delivery_log import DeliveryLog, TapCount, added
+from faultpath.loop.delivery_log import DeliveryLog, TapCount, added, check_reached
 from faultpath.loop.graph import graph, interface_of
 from faultpath.loop.loop import Deliverer, Instant, Loop
 from faultpath.loop.parts import (
@@ -63,6 +63,7 @@ __all__ = [
     "UndeclaredReader",
     "WrittenTo",
     "added",
+    "check_reached",
     "graph",
     "interface_of",
     "readers",

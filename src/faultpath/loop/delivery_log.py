@@ -91,19 +91,41 @@ class TapCount:
     """Steps with a fault in force, of scenes that were running."""
     altered_steps: int
     """Steps in which the value delivered differed from the reading, of scenes that were running."""
+    missed: tuple[tuple[str, int], ...] = ()
+    """Faults that name the tap and were in force at none of these deliveries, with their onset."""
 
 
 def added(counts: Iterable[TapCount]) -> tuple[TapCount, ...]:
     """Return the sums tap by tap, in order of first appearance."""
-    sums: dict[tuple[str, str], tuple[int, int, int]] = {}
+    sums: dict[tuple[str, str], TapCount] = {}
     for count in counts:
-        before = sums.get((count.channel, count.reader), (0, 0, 0))
-        sums[count.channel, count.reader] = (
-            before[0] + count.deliveries,
-            before[1] + count.faulted_steps,
-            before[2] + count.altered_steps,
+        tap = count.channel, count.reader
+        before = sums.get(tap, TapCount(*tap, 0, 0, 0, count.missed))
+        sums[tap] = TapCount(
+            *tap,
+            before.deliveries + count.deliveries,
+            before.faulted_steps + count.faulted_steps,
+            before.altered_steps + count.altered_steps,
+            tuple(fault for fault in before.missed if fault in count.missed),
         )
-    return tuple(TapCount(*tap, *numbers) for tap, numbers in sums.items())
+    return tuple(sums.values())
+
+
+def check_reached(counts: Iterable[TapCount], last_steps: Sequence[int]) -> None:
+    """Check that each fault was in force at a delivery of every tap that it names.
+
+    `counts` are those of all scenes of a treatment, because a scene may read at other steps than
+    those beside it; `last_steps` are the last control steps at which these ran. Raises
+    `NotDelivered` where a fault missed all of them although one ran past the onset.
+    """
+    for tap in counts:
+        for fault, onset_step in tap.missed:
+            if past_onset := sum(step >= onset_step for step in last_steps):
+                raise NotDelivered(
+                    f"tap {tap.channel} -> {tap.reader}: '{fault}' never reached it, although "
+                    f"{past_onset} of {len(last_steps)} scenes ran past the onset: "
+                    f"the reader never got the channel while the fault was in force"
+                )
 
 
 @dataclass(frozen=True)
@@ -154,6 +176,7 @@ class DeliveryLog:
                 tap.deliveries * len(self.scenes),
                 int(tap.steps_faulted.sum()),
                 int(tap.steps_altered.sum()),
+                tuple((f.fault, f.onset_step) for f in tap.faults if not f.steps_in_force.any()),
             )
             for tap in self.taps
         )
@@ -165,18 +188,15 @@ class DeliveryLog:
                 return tap
         raise UndeclaredReader(f"there is no tap {channel} -> {reader} in this variant")
 
-    def check(
-        self, named: Mapping[tuple[str, str], Sequence[str]], last_step: NDArray[np.int64]
-    ) -> None:
-        """Check that faults acted at the taps they name, and nowhere else.
+    def check(self, named: Mapping[tuple[str, str], Sequence[str]]) -> None:
+        """Check that faults are at the taps they name, and nowhere else.
 
         Args:
             named: Descriptions of the faults that name a tap, by channel and reader. They are taken
                 from the faults and not from the taps, whose wiring is what is checked.
-            last_step: The last control step at which each scene ran, `[B]`.
 
         Raises:
-            NotDelivered: A fault missed every scene at a tap although one ran past the onset.
+            NotDelivered: A fault is not at a tap that it names.
             FaultedElsewhere: A tap altered a reading that no fault names.
         """
         for tap in self.taps:
@@ -188,11 +208,3 @@ class DeliveryLog:
                 raise FaultedElsewhere(f"{label} altered a reading, but no fault names it")
             if missing := expected - acting:
                 raise NotDelivered(f"{label}: '{min(missing)}' names it, but did not act there")
-            for log in tap.faults:
-                past_onset = last_step >= log.onset_step
-                if past_onset.any() and not log.steps_in_force.any():
-                    raise NotDelivered(
-                        f"{label}: '{log.fault}' never reached it, although "
-                        f"{int(past_onset.sum())} of {len(self.scenes)} scenes ran past the onset; "
-                        f"the reader got the channel in {tap.deliveries} steps"
-                    )

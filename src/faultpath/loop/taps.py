@@ -16,7 +16,7 @@ from faultpath.core.text import unknown
 from faultpath.faults import Fault
 from faultpath.interface import Interface, modules
 from faultpath.loop.corruption import corruptions
-from faultpath.loop.delivery_log import DeliveryLog, Guard, StepCounter
+from faultpath.loop.delivery_log import DeliveryLog, Guard, StepCounter, check_reached
 from faultpath.loop.reading import (
     MalformedReading,
     Query,
@@ -271,14 +271,15 @@ class Taps:
             steps_altered=self._altered.counts(n),
         )
 
-    def verify(self, last_step: NDArray[np.int64] | int) -> None:
+    def verify(self, last_step: NDArray[np.int64] | int | None = None) -> None:
         """Check that each fault reached the readers that it names, and no others.
 
         Args:
-            last_step: The last control step at which each scene ran, `[B]` or one for all.
+            last_step: The last control step at which each scene ran, `[B]` or one for all; `None`
+                where these are not all scenes of the treatment, so that others may be reached.
 
         Raises:
-            NotDelivered, FaultedElsewhere: See `DeliveryLog.check`.
+            NotDelivered, FaultedElsewhere: See `DeliveryLog.check` and `check_reached`.
             NotFinite: A first reading on an accelerator was not finite.
             WrittenTo: A guarded reader wrote into its copy.
         """
@@ -289,5 +290,7 @@ class Taps:
                     f"tap {tap}: the reader wrote into the reading, which others may read too; "
                     "copy it before writing"
                 )
-        last = np.broadcast_to(np.asarray(last_step, dtype=np.int64), (len(self._scenes),))
-        self.delivery_log().check(self._named, last)
+        log = self.delivery_log()
+        log.check(self._named)
+        if last_step is not None:
+            check_reached(log.counts(), np.broadcast_to(last_step, len(self._scenes)).tolist())

@@ -19,6 +19,8 @@ from faultpath.loop import (
     NotFinite,
     TapCount,
     UndeclaredReader,
+    added,
+    check_reached,
 )
 from faultpath.run.attempt import Done, Raised, attempt
 from faultpath.run.check.reads import Enough, Read, ReadLog
@@ -178,6 +180,11 @@ def run_block(system: System, block: BlockSpec) -> RecordedBlock:
             fails = next(failing, TRIALS)
         if error:
             break
+    if not error and not block.signals:  # those are recorded in a few scenes of a treatment
+        try:
+            check_reached(added(counts), [o.steps(system.control_dt_s) - 1 for o in outcomes])
+        except NotDelivered as missed:
+            error, fails = str(missed), "fault delivery"
     return RecordedBlock(
         outcomes=() if error else tuple(outcomes),
         counts=tuple(counts),

@@ -129,6 +129,7 @@ def run_plan(
                     lambda task, reply: queue.put(state.take_in(task, reply)),
                     report=lambda: progress(state.progress()),
                 )
+                state.check_reached(system.control_dt_s)
                 rechecks = Rechecks(state.units, state.outcomes, run)
                 if recheck:
                     tasks = iter(rechecks.tasks(state.sound_units()))

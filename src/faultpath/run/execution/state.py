@@ -8,7 +8,7 @@ from pathlib import Path
 
 from faultpath.core.errors import UserError
 from faultpath.core.text import one_line
-from faultpath.loop import TapCount, added
+from faultpath.loop import TapCount, added, check_reached
 from faultpath.run.attempt import Done, Raised, Reply
 from faultpath.run.deliveries import TreatmentPart
 from faultpath.run.findings import RaisedTogether
@@ -240,6 +240,23 @@ class RunState:
         for unit in self.units:
             counts.setdefault((unit.treatment_key, unit.part), []).extend(self._taps[unit.key])
         return {key: added(taps) for key, taps in counts.items()}
+
+    def check_reached(self, dt_s: float) -> None:
+        """Check that each fault reached its readers in one scene of its treatment or another.
+
+        `dt_s` is the system's control step. Raises `NotDelivered`.
+        """
+        counts: dict[str, list[TapCount]] = {}
+        last_steps: dict[str, list[int]] = {}
+        for unit in self.units:
+            key = unit.treatment_key
+            counts.setdefault(key, []).extend(self._taps[unit.key])
+            if unit.treatment.faults:
+                ends = (self.outcomes[key, scene] for scene in unit.scenes)
+                steps = (outcome.steps(dt_s) - 1 for outcome in ends if not outcome.failed)
+                last_steps.setdefault(key, []).extend(steps)
+        for key, steps in last_steps.items():
+            check_reached(added(counts[key]), steps)
 
     def progress(self) -> Progress:
         """Return how far the run is, and how long it takes yet at the pace that it had."""
