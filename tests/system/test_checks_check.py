@@ -60,7 +60,12 @@ def test_a_broken_system_fails_its_check_and_no_other(broken):
 
 @pytest.mark.parametrize(
     ("name", "library"),
-    [(BROKEN, "any"), ("examples/toy.py:create", "carts"), ("examples/dock.py:create", "floors")],
+    [
+        (BROKEN, "any"),
+        ("examples/toy.py:create", "carts"),
+        ("examples/dock.py:create", "floors"),
+        ("examples/boat.py:create", "training"),
+    ],
 )
 def test_a_sound_system_passes(name, library):
     report = check(name if name == BROKEN else f"{ROOT / name}", library=library)
