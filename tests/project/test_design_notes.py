@@ -22,9 +22,8 @@ from faultpath_quadrotor.planners import CostWeights
 from faultpath_quadrotor.plant.wind import ELEVATION_DEG
 from faultpath_quadrotor.platform import PLATFORM
 from faultpath_quadrotor.system import Quadrotor
-from faultpath_quadrotor.training.catalogue import RECONSTRUCTIONS
 from faultpath_quadrotor.training.corruption import DCC_HALF_RANGE
-from faultpath_quadrotor.training.reconstruction_task import ReconstructionTask
+from faultpath_quadrotor.training.reconstruction_task import MODELS, ReconstructionTask
 from faultpath_quadrotor.training.windows import COUNTS
 from faultpath_quadrotor.vehicle import VehicleParameters
 
@@ -200,7 +199,7 @@ def test_tables_have_a_line_for_each() -> None:
     contracts = PROJECT["tool"]["importlinter"]["contracts"]
     layers = [name for layer in contracts[0]["layers"] for name in layer.split(" | ")]
     assert first_column("CONTRIBUTING", "room of the engine") == layers
-    assert first_column("reconstruction", "model") == [entry.name for entry in RECONSTRUCTIONS]
+    assert first_column("reconstruction", "model") == list(MODELS)
     costs = CostWeights.model_fields.keys() - {"margin_m", "v_max_mps"}
     assert len(first_column("platform", "term")) == len(costs)
     listed = re.findall(r"\]\((\w+)\.md\)", PAGES["README"].read_text("utf-8"))

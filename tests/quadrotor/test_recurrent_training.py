@@ -1,5 +1,6 @@
 """How the wind reconstruction is fitted, and that its repair differs by the corruption alone."""
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -8,7 +9,7 @@ import torch
 from faultpath_quadrotor.training import corruption
 from faultpath_quadrotor.training.corruption import dcc
 from faultpath_quadrotor.training.flight import fly
-from faultpath_quadrotor.training.reconstruction_task import HEAD, ReconstructionTask
+from faultpath_quadrotor.training.reconstruction_task import HEAD, MODELS, ReconstructionTask
 from faultpath_quadrotor.training.windows import Windows, cut
 from flights import in_memory
 
@@ -40,7 +41,8 @@ def test_repair_shares_weights_and_order_and_without_noise_the_loss(monkeypatch)
     plain, repair = task("gru"), task("gru+dcc")
     assert torch.equal(weights(plain), weights(repair))
     assert plain.order_key == repair.order_key
-    monkeypatch.setattr(corruption, "DCC_HALF_RANGE", 0.0)
+    noiseless = MODELS | {"gru+dcc": replace(MODELS["gru+dcc"], half_range=0.0)}
+    monkeypatch.setattr("faultpath_quadrotor.training.reconstruction_task.MODELS", noiseless)
     assert loss(plain) == loss(task("gru+dcc"))
 
 

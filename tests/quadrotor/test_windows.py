@@ -5,7 +5,6 @@ from pathlib import Path
 
 import pytest
 import torch
-from faultpath_quadrotor.training import corruption
 from faultpath_quadrotor.training.fitting import fit
 from faultpath_quadrotor.training.flight import collect
 from faultpath_quadrotor.training.predictor_task import PredictorTask
@@ -78,19 +77,18 @@ def data(pools) -> Path:
     return pools["nominal"].parent
 
 
-def task(name, data, seed=0, epochs=2):
-    short = PredictorTask(name, seed, data)
+def task(name, data, seed=0, epochs=2, **options):
+    short = PredictorTask(name, seed, data, **options)
     short.schedule = Schedule(epochs=epochs, batch_size=64)
     return short
 
 
 @pytest.mark.parametrize("base", ["wm-a", "wm-u"])
-def test_zero_noise_is_the_baseline_to_the_bit(base, data, tmp_path, monkeypatch):
+def test_zero_noise_is_the_baseline_to_the_bit(base, data, tmp_path):
     """+DCC changes the delivered calibration and nothing else: not weights, not order."""
     plain = fit(task(base, data), tmp_path)
+    silent = fit(task(f"{base}+dcc", data, half_range=0.0), tmp_path)
     noisy = fit(task(f"{base}+dcc", data), tmp_path / "noisy")
-    monkeypatch.setattr(corruption, "DCC_HALF_RANGE", 0.0)
-    silent = fit(task(f"{base}+dcc", data), tmp_path)
     assert silent.read_bytes() == plain.read_bytes()
     assert noisy.read_bytes() != plain.read_bytes()
 

@@ -94,7 +94,6 @@ _DEPTH = (CLEARANCE_POOL,)
 CLEARANCE = ModelEntry("clearance", _task, _DEPTH, "obstacle clearance from depth", 6, (0,))
 
 ALL = (*PREDICTORS, *RECONSTRUCTIONS, CLEARANCE)
-POOLS = {entry.name: entry.pools for entry in ALL}
 GROUPS: dict[str, tuple[ModelEntry, ...]] = {
     "predictors": PREDICTORS,
     "reconstructions": RECONSTRUCTIONS,

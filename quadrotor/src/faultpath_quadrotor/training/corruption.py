@@ -15,7 +15,7 @@ CALIBRATION = ("mass", "thrust_scale")
 DCC_HALF_RANGE = 0.2  # paper, Section IV-B
 
 
-def dcc(readers: Iterable[str]) -> tuple[Fault, ...]:
+def dcc(readers: Iterable[str], half_range: float = DCC_HALF_RANGE) -> tuple[Fault, ...]:
     """Return independent uniform noise on mass and thrust scale at `readers`.
 
     Each channel has its own cause: the two factors are independent, and all readers of a
@@ -23,7 +23,7 @@ def dcc(readers: Iterable[str]) -> tuple[Fault, ...]:
     left alone, and one may read one channel only.
     """
     interface = quadrotor_interface()
-    noise = UniformScale(half_range=DCC_HALF_RANGE)
+    noise = UniformScale(half_range=half_range)
     known = {name for channel in CALIBRATION for name in interface.channel(channel).readers}
     aim = tuple(sorted(known & set(readers))) or (ALL,)
     return tuple(

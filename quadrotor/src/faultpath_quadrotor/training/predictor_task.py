@@ -23,7 +23,6 @@ from faultpath_quadrotor.predictors import (
 )
 from faultpath_quadrotor.predictors.network import features
 from faultpath_quadrotor.state import State
-from faultpath_quadrotor.training.catalogue import POOLS
 from faultpath_quadrotor.training.corruption import DCC_HALF_RANGE, corrupted, dcc
 from faultpath_quadrotor.training.fitting import ModelTask
 from faultpath_quadrotor.training.pool import pool_path, pools_sha256
@@ -40,7 +39,16 @@ from faultpath_quadrotor.training.windows import (
 DCC = "+dcc"
 BATCH_SIZE = 256  # paper, Section IV-A
 PARTS = ("position", "velocity", "rotation", "rate")
-EPOCHS, UNANCHORED_EPOCHS = 10, 30  # paper, Section IV-A
+
+
+_NOMINAL, _BOTH = ("nominal",), ("nominal", "wind")
+RECIPES = {
+    "wm-a": (_NOMINAL, 10),
+    "wm-u": (_NOMINAL, 30),
+    "wm-a-wind": (_BOTH, 10),
+    "wm-a-nowind": (_BOTH, 10),
+}
+"""Pools and epochs (paper, Section IV-A)."""
 
 
 class PredictorTask(ModelTask):
@@ -51,14 +59,16 @@ class PredictorTask(ModelTask):
     targets, initial weights and the order of minibatches stay (paper, Equation 1).
     """
 
-    def __init__(self, name: str, seed: int, data: Path) -> None:
+    def __init__(
+        self, name: str, seed: int, data: Path, half_range: float = DCC_HALF_RANGE
+    ) -> None:
         self.name = name
         self.seed = seed
         self.order_key = name.removesuffix(DCC)
-        self._pools = POOLS[name]
-        epochs = UNANCHORED_EPOCHS if self.order_key == "wm-u" else EPOCHS
+        self._pools, epochs = RECIPES[self.order_key]
         self.schedule = Schedule(epochs=epochs, batch_size=BATCH_SIZE)
         self._data = data
+        self._half_range = half_range
         self.platform = PLATFORM.weights_hash(name)
 
     def load(self) -> None:
@@ -72,7 +82,7 @@ class PredictorTask(ModelTask):
         self._train, self.count = training, len(training)
         self._scales = scales(training)
         readers = readers_of(self._blank())
-        faults = dcc(readers) if self.is_dcc else ()
+        faults = dcc(readers, self._half_range) if self.is_dcc else ()
         self._delivered = corrupted(faults, readers, training.ids, self.seed, training.calibration)
 
     @property
@@ -113,7 +123,7 @@ class PredictorTask(ModelTask):
             "data_sha256": pools_sha256(self._data, self._pools),
             "history": HISTORY,
             "horizon": HORIZON,
-            "calibration_half_range": DCC_HALF_RANGE if self.is_dcc else 0.0,
+            "calibration_half_range": self._half_range if self.is_dcc else 0.0,
             "validation_windows": len(self._validation),
             "scales": {name: float(value) for name, value in self._scales.items()},
         }

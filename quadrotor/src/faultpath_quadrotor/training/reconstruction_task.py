@@ -17,10 +17,9 @@ from faultpath.plugin.system import generator
 from faultpath.plugin.training import Schedule
 from faultpath_quadrotor.choices import RECONSTRUCTIONS
 from faultpath_quadrotor.models import blank_reconstruction
-from faultpath_quadrotor.platform import PLATFORM
+from faultpath_quadrotor.platform import PLATFORM, TRAJECTORY
 from faultpath_quadrotor.reconstruction import RecurrentReconstruction, WindNetwork
 from faultpath_quadrotor.training import TRAJECTORY_POOL
-from faultpath_quadrotor.training.catalogue import POOLS
 from faultpath_quadrotor.training.corruption import (
     DCC_HALF_RANGE,
     STATE_STD,
@@ -33,6 +32,27 @@ from faultpath_quadrotor.training.pool import pool_path, pools_sha256
 from faultpath_quadrotor.training.windows import HISTORY, Windows, every_history, windows_of
 
 HEAD, PAST = "reconstruction.head", "reconstruction.history"
+
+
+@dataclass(frozen=True)
+class Model:
+    """Settings in which the models differ."""
+
+    half_range: float | None = None
+    """Half range of the noise on the head's calibration; `None`: there is no noise."""
+    moves: bool = False
+    """Whether there is noise on the motion in the history."""
+
+
+MODELS: Mapping[str, Model] = {
+    "gru": Model(),
+    "gru+dcc": Model(half_range=DCC_HALF_RANGE),
+    "gru+state": Model(moves=True),
+    "gru-withheld": Model(),
+    "gru-trajectory": Model(),
+}
+"""The reference module, its repair, the control without calibration, and the one that learns from
+closed-loop flights, which has no calibration input (paper, Section V-A and V-B)."""
 
 
 @dataclass(frozen=True)
@@ -55,8 +75,7 @@ class ReconstructionTask(ModelTask):
     """One reconstruction: mean squared error of the wind vector (paper, appendix).
 
     A window's history is its commands 0..11 with the states 1..12 that they led to; the target is
-    the wind at state 12. With `+dcc` in the name there is noise on the head's calibration, with
-    `+state` on the motion in the history.
+    the wind at state 12.
     """
 
     def __init__(self, name: str, seed: int, data_folder: Path) -> None:
@@ -64,9 +83,10 @@ class ReconstructionTask(ModelTask):
         self.seed = seed
         self.platform = PLATFORM.weights_hash(name)
         self.schedule = Schedule(epochs=40, batch_size=256, optimiser="adam")  # paper, appendix
-        (self._pool,) = POOLS[name]
+        self._model = MODELS[name]
+        self._pool = TRAJECTORY_POOL if name == TRAJECTORY else "wind"
         self._data = data_folder
-        self.order_key, _, self._noise = name.partition("+")
+        self.order_key = name.partition("+")[0]
         blank = blank_reconstruction(name)
         assert isinstance(blank, RecurrentReconstruction)
         self._scaled = blank.network
@@ -79,7 +99,7 @@ class ReconstructionTask(ModelTask):
     def use(self, training: Windows, validation: Windows) -> None:
         """Take windows from memory, and the scales of inputs from the training ones."""
         self._scaled.measure(*_history(training), _calibration(training))
-        errors = self._errors(training) if self._noise == "state" else 0.0
+        errors = self._errors(training) if self._model.moves else 0.0
         self._training = _Samples.of(training, self._scaled, errors)
         self.count = len(training.ids)
         self._validation = _Samples.of(validation, self._scaled)
@@ -116,8 +136,8 @@ class ReconstructionTask(ModelTask):
             "description": RECONSTRUCTIONS[self.name],
             "data_sha256": pools_sha256(self._data, [self._pool]),
             "calibration_inputs": self._scaled.calibrated,
-            "calibration_noise_half_range": DCC_HALF_RANGE if self._noise == "dcc" else None,
-            **({"motion_noise_std": STATE_STD} if self._noise == "state" else {}),
+            "calibration_noise_half_range": self._model.half_range,
+            **({"motion_noise_std": STATE_STD} if self._model.moves else {}),
         }
 
     def _errors(self, windows: Windows) -> Tensor:
@@ -133,7 +153,8 @@ class ReconstructionTask(ModelTask):
 
     def _calibration(self, windows: tuple[str, ...]) -> Tensor:
         """Return the calibration that the head gets, standardised, `[2, N]`."""
-        faults = dcc([HEAD]) if self._noise == "dcc" else ()
+        half_range = self._model.half_range
+        faults = () if half_range is None else dcc([HEAD], half_range)
         mass, scale = self._training.calibration
         readings = {"mass": mass, "thrust_scale": scale}
         delivered = corrupted(faults, [HEAD], windows, self.seed, readings)
