@@ -14,7 +14,7 @@ from written import written
 
 from faultpath.cli.main import INTERRUPTED
 
-pytestmark = pytest.mark.usefixtures("without_pages")
+pytestmark = [pytest.mark.usefixtures("without_pages"), pytest.mark.slow]
 SCENES, BLOCKS = 8, 24
 SLOW = """block_size = 2
 def __init__(self, gate):

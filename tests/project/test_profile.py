@@ -22,6 +22,8 @@ from faultpath.report.effects import effect_rows
 from faultpath.run.question import AuditCall, AuditQuestion
 from faultpath.stats.effects import success_effect
 
+pytestmark = pytest.mark.slow  # all together
+
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = str(ROOT / "src" / "faultpath")
 SCENES = 11

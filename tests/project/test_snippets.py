@@ -95,9 +95,13 @@ def workspace(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(autouse=True)
-def _here(workspace: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def _here(
+    workspace: Path, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Run all in this process: to start others takes longer than what most documents run."""
     monkeypatch.chdir(workspace)
+    others = str(tmp_path_factory.getbasetemp())  # folders of tests, with a `mine` of their own
+    monkeypatch.setattr(sys, "path", [each for each in sys.path if not each.startswith(others)])
     monkeypatch.syspath_prepend(workspace)
     monkeypatch.setattr("faultpath.api.systems.local", lambda workers: Here())
     monkeypatch.delitem(sys.modules, "mine", raising=False)  # of another test: `init` refuses it

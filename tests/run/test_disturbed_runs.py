@@ -19,6 +19,8 @@ from faultpath.run.plan import Plan
 from faultpath.run.store.folder import RunFolder
 from faultpath.run.work.executor import Progress
 
+pytestmark = pytest.mark.slow  # all together
+
 TABLES = ("outcomes.parquet", "traces.parquet", "deliveries.json")
 ORDER = ("s07", "s02", "s09", "s00", "s05", "s01", "s08", "s03", "s06", "s04")
 SPOILT = {

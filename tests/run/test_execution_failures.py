@@ -79,6 +79,7 @@ def slow_worker(parent: str) -> ToySystem:
 UNRULY = f"{__file__}:unruly"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("factory", "scenes", "limits", "limit"),
     [("unruly", SCENES[5:6], {"time_limit_s": 0.5}, 0.5), ("bounded", SCENES[4:6], {}, 2)],

@@ -13,6 +13,8 @@ from faultpath.stats import unconditional
 from faultpath.stats.breakeven import break_even
 from faultpath.stats.effects import success_effect
 
+pytestmark = pytest.mark.slow  # all together
+
 ALPHA = 0.05
 
 

@@ -7,6 +7,8 @@ from faultpath.core.errors import SystemMistake, UserError
 from faultpath.run.check.blocks import RecordedBlock, coarsest
 from faultpath.run.check.reads import Read
 
+pytestmark = pytest.mark.slow  # all together
+
 
 @pytest.mark.parametrize(
     ("broken", "failing", "sentence"),

@@ -15,6 +15,7 @@ from faultpath.core.errors import UserError
 from faultpath.system.init import TEMPLATES, write_system
 
 
+@pytest.mark.slow
 def test_new_systems_pass_their_own_tests(tmp_path):
     """All of them in one process: most of the time goes into loading what they need."""
     kinds = [kind for kind in TEMPLATES if kind != "torch" or find_spec("torch")]
