@@ -22,6 +22,8 @@ from faultpath.report.tables import markdown_grid
 from faultpath.report.terminal import decision
 
 MAP_PICTURES = {"map": map_picture, "correlation": correlation_picture}
+ALTERNATIVES = {"correlation": "The expected difference by the correlation of the two errors"}
+"""Of pictures of a map that show another thing than its headline says."""
 PARTS: dict[str, tuple[str, str]] = {
     "interface": ("Who gets the fault", "#interface > *"),
     "effects": ("Effects of the repair", "#effects"),
@@ -85,14 +87,16 @@ def map_picture_of(name: str, part: str) -> Picture:
     """Return the picture of a map, or of its success by correlation."""
     record = load(name).record
     svg = MAP_PICTURES[part](record).render(standalone=True) + "\n"
-    return Picture(f"{name}-{part}.svg", words(record).headline, svg)
+    text = ALTERNATIVES.get(part) or words(record).headline
+    return Picture(f"{name}-{part}.svg", text, svg)
 
 
 def scan_picture_of(name: str) -> Picture:
     """Return the triangle of pairs of the first variant of a scan."""
     record = load(name).record
     svg = triangle(record, record.versions[0]).render(standalone=True) + "\n"
-    return Picture(f"{name}-pairs.svg", words(record).headline, svg)
+    text = "Success with none, each and both of the errors of every pair"  # beside the headline
+    return Picture(f"{name}-pairs.svg", text, svg)
 
 
 def part_of(place: str, part: str) -> str:
