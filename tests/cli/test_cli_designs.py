@@ -16,6 +16,8 @@ from faultpath.cli.main import INTERRUPTED
 from faultpath.report.sentences import words
 from faultpath.run.store.folder import RunFolder
 
+pytestmark = pytest.mark.slow  # all together
+
 QUESTIONS: dict[str, dict[str, object]] = {
     "map": {"baseline": "calibrated", "repair": "blind", "fault": "gain", "up-to": 0.4}
     | {"against": "controller,observer", "points": 30, "scenes": 4},

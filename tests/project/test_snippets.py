@@ -27,6 +27,8 @@ from cli_runs import faultpath
 
 from faultpath.run.work.executor import Here
 
+pytestmark = pytest.mark.slow  # all together
+
 Run = Callable[..., CompletedProcess[str]]
 
 ROOT = Path(__file__).resolve().parents[2]

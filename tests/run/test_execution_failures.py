@@ -20,6 +20,8 @@ from faultpath.run.execution.runner import run_plan
 from faultpath.run.execution.state import FEW
 from faultpath.system import Status
 
+pytestmark = pytest.mark.slow  # all together
+
 WRONG = {
     "distance": {"metrics": {"distance": math.nan}},
     "status": {"status": "success"},
@@ -79,7 +81,6 @@ def slow_worker(parent: str) -> ToySystem:
 UNRULY = f"{__file__}:unruly"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("factory", "scenes", "limits", "limit"),
     [("unruly", SCENES[5:6], {"time_limit_s": 0.5}, 0.5), ("bounded", SCENES[4:6], {}, 2)],

@@ -18,6 +18,8 @@ from faultpath.run.provenance import RunProvenance, run_provenance
 from faultpath.run.registry import load_system
 from faultpath.run.work.processes import local
 
+pytestmark = pytest.mark.slow  # all together
+
 PLACES = ("file", "helper", "data")
 
 
