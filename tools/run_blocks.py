@@ -23,7 +23,7 @@ from faultpath.report.terminal import decision
 
 MAP_PICTURES = {"map": map_picture, "correlation": correlation_picture}
 ALTERNATIVES = {"correlation": "The expected difference by the correlation of the two errors"}
-"""Of pictures of a map that show another thing than its headline says."""
+"""Descriptions of pictures of a map that show another thing than its headline says."""
 PARTS: dict[str, tuple[str, str]] = {
     "interface": ("Who gets the fault", "#interface > *"),
     "effects": ("Effects of the repair", "#effects"),

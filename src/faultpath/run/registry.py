@@ -211,8 +211,7 @@ def _target(name: str) -> tuple[str, str]:
         return _split(factory_name(installed_systems()[name] if _installed(name) else name))
     except UserError:
         known = ", ".join(sorted(installed_systems())) or "none"
-        there = ":" not in name and os.path.isfile(f"{name}.py")
-        hint = f"did you mean '{name}.py'? " if there else ""
+        hint = f"did you mean '{name}.py'? " if os.path.isfile(f"{name}.py") else ""
         raise UserError(
             f"there is no system {name!r}; {hint}installed: {known}; install what declares it, "
             "or name a factory as 'module:attribute' or 'path/to/file.py:attribute'"
