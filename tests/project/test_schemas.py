@@ -43,7 +43,7 @@ def validator(name: str) -> Any:
 
 
 def test_there_is_none_that_no_model_has() -> None:
-    """What they say is compared with the models as every generated document is."""
+    """Their contents are compared with the models as every generated document is."""
     assert set(schema_files.FOLDER.iterdir()) == set(schema_files.files())
 
 

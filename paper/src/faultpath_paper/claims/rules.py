@@ -185,7 +185,7 @@ def _by_point(side: str, limit: str) -> Rule:
 
 
 def _reported() -> Rule:
-    """What there is: a quantity that was not run raises `NotRun`."""
+    """Results that are there: a quantity that was not run raises `NotRun`."""
 
     def judge(contrast: Contrast) -> Judged:
         return CONFIRMED
